@@ -1,0 +1,85 @@
+"""The tree of errors. Each message says what happened, where, and what to do next.
+
+    WindplanError
+    ├── InputError            something handed in cannot be used: exit code 2
+    │   ├── MissionFileError  the YAML mission file, every problem at once
+    │   ├── TerrainError      a DEM or mesh that cannot be read or does not cover the place
+    │   ├── WindError         a wind that cannot be read, has gaps or does not cover the place
+    │   ├── FormatError       a .waypoints or .plan file
+    │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
+    └── NoRouteError          all input is fine and yet no route exists: exit code 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong, and where.
+
+    `field` is the dotted path of the mission file's field (`vehicle.airspeed`, `via.0`); `file`, `line` and `column`
+    (both counted from 1) say where it stands, as far as that is known.
+    """
+
+    message: str
+    field: str | None = None
+    file: Path | None = None
+    line: int | None = None
+    column: int | None = None
+
+    def __str__(self) -> str:
+        place = [str(part) for part in (self.file, self.line, self.column) if part is not None]
+        head = ":".join(place)
+        return ": ".join(part for part in (head, self.field, self.message) if part)
+
+
+class WindplanError(Exception):
+    """Anything that this package raises on purpose."""
+
+
+class InputError(WindplanError):
+    """Something handed in cannot be used.
+
+    Holds `problems`, one or more; the message lists them, a line each.
+    """
+
+    def __init__(self, problems: str | Problem | Sequence[Problem]) -> None:
+        if isinstance(problems, str):
+            problems = Problem(problems)
+        self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class MissionFileError(InputError):
+    """The mission file does not parse or breaks the schema."""
+
+
+class TerrainError(InputError):
+    """Terrain that cannot be read, or does not cover the place."""
+
+
+class WindError(InputError):
+    """Wind that cannot be read, has gaps, or does not cover the place or time."""
+
+
+class FormatError(InputError):
+    """A mission in a ground station's format that cannot be read or written."""
+
+
+class RequestError(InputError):
+    """A request whose sites, limits and terrain contradict each other."""
+
+
+class NoRouteError(WindplanError):
+    """No route exists from start to goal.
+
+    `cuts` counts the edges at the border of what could be reached, by what forbids them.
+    """
+
+    def __init__(self, message: str, cuts: dict[str, int]) -> None:
+        self.cuts = cuts
+        super().__init__(message)
