@@ -1,13 +1,13 @@
 """The tree of errors. Each message says what happened, where, and what to do next.
 
-    WindplanError
-    ├── InputError            something handed in cannot be used: exit code 2
-    │   ├── MissionFileError  the YAML mission file, every problem at once
-    │   ├── TerrainError      a DEM or mesh that cannot be read or does not cover the place
-    │   ├── WindError         a wind that cannot be read, has gaps or does not cover the place
-    │   ├── FormatError       a .waypoints or .plan file
-    │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
-    └── NoRouteError          all input is fine and yet no route exists: exit code 1
+WindplanError
+├── InputError            something handed in cannot be used: exit code 2
+│   ├── MissionFileError  the YAML mission file, every problem at once
+│   ├── TerrainError      a DEM or mesh that cannot be read or does not cover the place
+│   ├── WindError         a wind that cannot be read, has gaps or does not cover the place
+│   ├── FormatError       a .waypoints or .plan file
+│   └── RequestError      sites, limits and terrain contradict each other, every problem at once
+└── NoRouteError          all input is fine and yet no route exists: exit code 1
 """
 
 from __future__ import annotations

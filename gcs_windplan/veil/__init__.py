@@ -1,0 +1,21 @@
+"""The veil: nodes laid over the terrain, and the legs between them that are clear."""
+
+from gcs_windplan.veil.airspace import Airspace, Prism
+from gcs_windplan.veil.clearance import BREACHES, Clearance
+from gcs_windplan.veil.grid import GridVeil, breaches_around, grid_steps, lay_grid
+from gcs_windplan.veil.prm import SHARE_OF_GRID, PrmVeil, lay_prm, roadmap_radius
+
+__all__ = [
+    "BREACHES",
+    "SHARE_OF_GRID",
+    "Airspace",
+    "Clearance",
+    "GridVeil",
+    "PrmVeil",
+    "Prism",
+    "breaches_around",
+    "grid_steps",
+    "lay_grid",
+    "lay_prm",
+    "roadmap_radius",
+]

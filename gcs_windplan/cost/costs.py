@@ -1,0 +1,144 @@
+"""The costs that a route is chosen by.
+
+In the search an edge costs what the kernels in `kernels/best_first.py` say. For legs of any length, as shaping makes
+them, each cost has a form that adds up along a polyline and equals the search's for ordinary edges: the angle, which the
+paper counts once an edge, becomes its mean along the leg times the leg's length in ordinary edges. Counted once a leg,
+the angle would call one long leg against the wind better than ten short ones down it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cost.sampling import LegIntegrals, integrate, performance_of
+from gcs_windplan.errors import InputError, Problem
+from gcs_windplan.kernels import best_first as kernel
+from gcs_windplan.kernels.triangle import mean_angles
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.wind.field import WindField
+
+CostName: TypeAlias = Literal["distance", "angle", "hybrid", "time"]
+COST_NAMES: tuple[CostName, ...] = ("distance", "angle", "hybrid", "time")
+
+_ESTIMATE_SAMPLES = 16
+_ESTIMATE_BATCH = 50_000  # nodes at a time, so that memory stays bounded
+
+_CODES = {"distance": kernel.DISTANCE, "angle": kernel.ANGLE, "hybrid": kernel.HYBRID, "time": kernel.TIME}
+
+
+@dataclass(frozen=True, slots=True)
+class CostChoice:
+    """Which cost, with the weights of the hybrid one (11)."""
+
+    name: CostName = "time"
+    distance: float = 0.1
+    angle: float = 0.9
+
+    def __post_init__(self) -> None:
+        if self.name not in COST_NAMES:
+            raise InputError(Problem(f"'{self.name}' is no cost, choose {', '.join(COST_NAMES)}", "cost"))
+        weights = (self.distance, self.angle)
+        if not all(math.isfinite(w) and w >= 0 for w in weights) or sum(weights) == 0:
+            raise InputError(Problem("the weights of hybrid must be 0 or more, and not both 0", "cost"))
+
+    def __str__(self) -> str:
+        if self.name == "hybrid":
+            return f"hybrid (distance {self.distance:g}, angle {self.angle:g})"
+        return self.name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LegCost:
+    """A cost at work: for one vehicle in one wind, between two sites.
+
+    `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m].
+    """
+
+    choice: CostChoice
+    wind: WindField
+    vehicle: Vehicle
+    edge_length: float
+    straight: float
+
+    def of_legs(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
+        """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown."""
+        lengths = np.linalg.norm(ends - starts, axis=1)
+        parts = integrate(self.wind, self.vehicle, starts, ends)
+        angle = parts.angle / self.edge_length
+        match self.choice.name:
+            case "distance":
+                cost = lengths
+            case "angle":
+                cost = angle
+            case "hybrid":
+                cost = self.choice.angle * angle / math.pi + self.choice.distance * lengths / self.straight
+            case "time":
+                cost = parts.seconds
+        return np.where(np.isfinite(parts.seconds), cost, np.inf)
+
+    def of_polyline(self, points: FloatArray) -> float:
+        """The cost of a polyline (n, 3)."""
+        return float(np.sum(self.of_legs(points[:-1], points[1:])))
+
+    def setting(self, goal: FloatArray, winds: FloatArray) -> FloatArray:
+        """The search kernels' settings for a goal (3,) in the nodes' winds (n, 3)."""
+        setting = np.zeros(kernel.SETTINGS)
+        setting[kernel.CODE] = _CODES[self.choice.name]
+        setting[kernel.ANGLE_WEIGHT] = self.choice.angle
+        setting[kernel.DISTANCE_WEIGHT] = self.choice.distance
+        setting[kernel.STRAIGHT] = self.straight
+        setting[kernel.GOAL_E : kernel.GOAL_Z + 1] = goal
+        centre, radius = enclosing_ball(winds[:, :2])
+        if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
+            centre, radius = np.zeros(2), float(np.max(np.hypot(winds[:, 0], winds[:, 1])))
+        setting[kernel.BALL_E : kernel.BALL_N + 1] = centre
+        setting[kernel.BALL_RADIUS] = radius
+        setting[kernel.BALL_UP] = np.max(winds[:, 2], initial=0.0)
+        setting[kernel.BALL_DOWN] = np.max(-winds[:, 2], initial=0.0)
+        return setting
+
+    def estimates(self, points: FloatArray, goal: FloatArray) -> FloatArray:
+        """The estimates from nodes (n, 3) to the goal (3,) where the kernels have none of their own, else empty.
+
+        Only `angle` needs it: (10) takes the mean angle between the wind and the straight line to the goal, here at 16
+        places of that line. It overestimates routes of a single short edge, so A* with it is not optimal.
+        """
+        if self.choice.name != "angle":
+            return np.empty(0)
+        estimates = np.zeros(len(points))
+        fractions = (np.arange(_ESTIMATE_SAMPLES) + 0.5) / _ESTIMATE_SAMPLES
+        for begin in range(0, len(points), _ESTIMATE_BATCH):
+            batch = points[begin : begin + _ESTIMATE_BATCH]
+            known = np.flatnonzero(np.isfinite(batch).all(axis=1))
+            vectors = goal - batch[known]
+            places = batch[known, None, :] + fractions[:, None] * vectors[:, None, :]
+            winds = np.ascontiguousarray(self.wind.at(places.reshape(-1, 3)))
+            estimates[begin + known] = mean_angles(np.ascontiguousarray(vectors), winds)
+        return estimates
+
+    def performance(self) -> FloatArray:
+        """The vehicle as the kernels take it."""
+        return performance_of(self.vehicle)
+
+
+def enclosing_ball(winds: FloatArray) -> tuple[FloatArray, float]:
+    """A disc (centre (2,), radius [m/s]) around all winds (n, 2): Ritter 1990, at most a twentieth too large."""
+    if len(winds) == 0:
+        return np.zeros(2), 0.0
+    far = winds[np.argmax(np.linalg.norm(winds - winds[0], axis=1))]
+    other = winds[np.argmax(np.linalg.norm(winds - far, axis=1))]
+    centre, radius = (far + other) / 2, float(np.linalg.norm(far - other)) / 2
+    for _ in range(100):
+        distances = np.linalg.norm(winds - centre, axis=1)
+        worst = int(np.argmax(distances))
+        if distances[worst] <= radius * (1 + 1e-12):
+            break
+        grown = (radius + float(distances[worst])) / 2
+        centre = winds[worst] + (centre - winds[worst]) * grown / distances[worst]
+        radius = grown
+    return centre, float(np.max(np.linalg.norm(winds - centre, axis=1)))

@@ -1,0 +1,170 @@
+"""Flying a polyline: what each leg and the whole route take in the wind, and how close they come to the ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cost import LegIntegrals, integrate
+from gcs_windplan.errors import NoRouteError
+from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.terrain import Terrain
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.wind.field import WindField
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """A corner of the route.
+
+    `altitude` above mean sea level and `above_ground` [m]; `seconds` from the first waypoint to the arrival here; `east`
+    and `north` in the local frame [m].
+    """
+
+    number: int
+    point: GeoPoint
+    altitude: float
+    above_ground: float
+    seconds: float
+    east: float
+    north: float
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """From one waypoint to the next.
+
+    Angles in degrees from true north, lengths in m, speeds in m/s. `distance` is level, `length` along the slope, `climb`
+    the gain in height. `ground_speed` is the level mean over the leg. `wind_along` is positive from behind, `wind_across`
+    from left to right, both means. `clearance` is the smallest and `height` the largest height above ground.
+    """
+
+    number: int
+    track_deg: float
+    heading_deg: float
+    distance: float
+    length: float
+    climb: float
+    ground_speed: float
+    wind_along: float
+    wind_across: float
+    seconds: float
+    clearance: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Totals:
+    """The sum of all legs: lengths and heights in m, time in s; take-off and landing apart."""
+
+    seconds: float
+    distance: float
+    length: float
+    climb: float
+    descent: float
+    clearance: float
+    height: float
+    takeoff_seconds: float
+    landing_seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """A route as flown: its waypoints, legs and totals."""
+
+    waypoints: tuple[Waypoint, ...]
+    legs: tuple[Leg, ...]
+    totals: Totals
+
+
+def fly(points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField, vehicle: Vehicle) -> Flight:
+    """Fly a polyline (n, 3): east, north, height above mean sea level [m].
+
+    Raises `NoRouteError` where a leg cannot be flown in the wind.
+    """
+    starts, ends = points[:-1], points[1:]
+    parts = integrate(wind, vehicle, starts, ends)
+    _refuse_unflyable(parts)
+    heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
+    convergence = np.degrees(frame.convergence((starts + ends) / 2))
+    legs = tuple(
+        _leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts))
+    )
+    waypoints = _waypoints(points, frame, terrain, parts.seconds)
+    return Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
+
+
+def _refuse_unflyable(parts: LegIntegrals) -> None:
+    """Raise if the wind, looked at closely, stops a leg that the graph's coarser wind let pass."""
+    stopped = np.flatnonzero(~np.isfinite(parts.seconds))
+    if len(stopped):
+        i = int(stopped[0])
+        raise NoRouteError(
+            f"leg {i + 1} cannot be flown: the wind along it is {parts.along[i]:.1f} m/s along and"
+            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places. Use a finer graph or more airspeed.",
+            {"wind": len(stopped)},
+        )
+
+
+def _leg(i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, convergence_deg: float) -> Leg:
+    """One leg's figures from its vector [m] and its share of the integrals."""
+    distance, length = math.hypot(vector[0], vector[1]), float(np.linalg.norm(vector))
+    seconds = float(parts.seconds[i])
+    speed = distance / seconds if seconds > 0 else 0.0
+    along, across = float(parts.along[i]), float(parts.across[i])
+    track = math.degrees(math.atan2(vector[0], vector[1])) + convergence_deg
+    # the air must carry the rest of the velocity over ground: `speed` forward and nothing sideways
+    crab = math.degrees(math.atan2(-across, speed - along)) if distance > 0 else 0.0
+    return Leg(
+        number=i + 1,
+        track_deg=track % 360,
+        heading_deg=(track + crab) % 360,
+        distance=distance,
+        length=length,
+        climb=float(vector[2]),
+        ground_speed=speed,
+        wind_along=along,
+        wind_across=across,
+        seconds=seconds,
+        clearance=float(heights[0]),
+        height=float(heights[1]),
+    )
+
+
+def _waypoints(
+    points: FloatArray, frame: LocalFrame, terrain: Terrain, seconds: FloatArray
+) -> tuple[Waypoint, ...]:
+    """The polyline's corners as places on earth, with the time of arrival."""
+    latitudes, longitudes = frame.to_geographic(points)
+    ground = terrain.heights_at(points)
+    arrivals = np.concatenate([[0.0], np.cumsum(seconds)])
+    return tuple(
+        Waypoint(
+            number=i + 1,
+            point=GeoPoint(float(latitudes[i]), float(longitudes[i])),
+            altitude=float(points[i, 2]),
+            above_ground=float(points[i, 2] - ground[i]),
+            seconds=float(arrivals[i]),
+            east=float(points[i, 0]),
+            north=float(points[i, 1]),
+        )
+        for i in range(len(points))
+    )
+
+
+def _totals(legs: tuple[Leg, ...], waypoints: tuple[Waypoint, ...], vehicle: Vehicle) -> Totals:
+    """The sums over all legs, and the vertical ends at the vehicle's rates."""
+    return Totals(
+        seconds=math.fsum(leg.seconds for leg in legs),
+        distance=math.fsum(leg.distance for leg in legs),
+        length=math.fsum(leg.length for leg in legs),
+        climb=math.fsum(max(leg.climb, 0.0) for leg in legs),
+        descent=math.fsum(max(-leg.climb, 0.0) for leg in legs),
+        clearance=min(leg.clearance for leg in legs),
+        height=max(leg.height for leg in legs),
+        takeoff_seconds=waypoints[0].above_ground / vehicle.climb,
+        landing_seconds=waypoints[-1].above_ground / vehicle.descent,
+    )

@@ -1,0 +1,334 @@
+"""A* over an implicit grid and over a CSR graph; edge costs are worked out on the fly from the nodes' winds.
+
+Both kernels are one textbook A* with a closed list and a binary heap with lazy deletion. With a consistent lower bound
+that is optimal; with the paper's heuristics, which are none, it is what the paper runs.
+
+`setting` is an array of floats, made by `search/`: see the indices below. Edges take the wind as linear between their
+two nodes. Where both ends can be flown, so can all between: the winds in which a track is flyable are a convex set.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.triangle import PAPER, slowness, wind_angle
+
+DISTANCE, ANGLE, HYBRID, TIME = 0, 1, 2, 3
+
+# indices into `setting`
+CODE = 0  # one of the four above
+ANGLE_WEIGHT, DISTANCE_WEIGHT, STRAIGHT = 1, 2, 3  # hybrid (11); STRAIGHT = d(start, goal) [m]
+GOAL_E, GOAL_N, GOAL_Z = 4, 5, 6  # [m]
+BALL_E, BALL_N, BALL_RADIUS, BALL_UP, BALL_DOWN = (
+    7,
+    8,
+    9,
+    10,
+    11,
+)  # all winds lie in it [m/s]; strongest up and down
+SETTINGS = 12
+
+
+@numba.njit(cache=True)
+def edge_time(
+    performance: FloatArray,
+    de: float, dn: float, dz: float,
+    ae: float, an: float, au: float,
+    be: float, bn: float, bu: float,
+) -> float:  # fmt: skip
+    """Seconds along an edge (de, dn, dz) [m] whose wind goes linearly from a to b [m/s]; Simpson's rule."""
+    length = math.sqrt(de * de + dn * dn + dz * dz)
+    if length == 0.0:
+        return 0.0
+    e, n, u = de / length, dn / length, dz / length
+    first = slowness(performance, e, n, u, ae, an, au)
+    last = slowness(performance, e, n, u, be, bn, bu)
+    if first == math.inf or last == math.inf:
+        return math.inf
+    middle = slowness(performance, e, n, u, 0.5 * (ae + be), 0.5 * (an + bn), 0.5 * (au + bu))
+    return length * (first + 4.0 * middle + last) / 6.0
+
+
+@numba.njit(cache=True)
+def edge_cost(
+    performance: FloatArray, setting: FloatArray,
+    de: float, dn: float, dz: float,
+    ae: float, an: float, au: float,
+    be: float, bn: float, bu: float,
+) -> float:  # fmt: skip
+    """The cost of an edge in the search; infinite where it cannot be flown. The angle is that at the arrival, (10)."""
+    seconds = edge_time(performance, de, dn, dz, ae, an, au, be, bn, bu)
+    code = setting[CODE]
+    if code == TIME or seconds == math.inf:
+        return seconds
+    if code == DISTANCE:
+        return math.sqrt(de * de + dn * dn + dz * dz)
+    angle = wind_angle(de, dn, dz, be, bn, bu)
+    if code == ANGLE:
+        return angle
+    return setting[ANGLE_WEIGHT] * angle / math.pi
+
+
+@numba.njit(cache=True)
+def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, z: float) -> float:
+    """The estimate from a place to the goal; for distance and time a consistent lower bound.
+
+    Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with airspeed
+    V + r in the constant wind c; times in a constant wind obey the triangle inequality. The paper's model does so only
+    for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball on 0.
+    """
+    de, dn, dz = setting[GOAL_E] - e, setting[GOAL_N] - n, setting[GOAL_Z] - z
+    level2 = de * de + dn * dn
+    code = setting[CODE]
+    if code != TIME:
+        distance = math.sqrt(level2 + dz * dz)
+        if code == DISTANCE:
+            return distance
+        if code == HYBRID:
+            return setting[DISTANCE_WEIGHT] * distance / max(distance, setting[STRAIGHT])
+        return 0.0
+    vertical = 0.0
+    if dz > 0.0:
+        vertical = dz / (performance[2] + setting[BALL_UP])
+    elif dz < 0.0:
+        vertical = -dz / (performance[3] + setting[BALL_DOWN])
+    if level2 == 0.0:
+        return vertical
+    level = math.sqrt(level2)
+    airspeed = performance[1] + setting[BALL_RADIUS]
+    along = (setting[BALL_E] * de + setting[BALL_N] * dn) / level
+    if performance[0] == PAPER:
+        speed = airspeed + along
+    else:
+        cross = (setting[BALL_N] * de - setting[BALL_E] * dn) / level
+        rest = airspeed * airspeed - cross * cross
+        if rest < 0.0:
+            return math.inf
+        speed = math.sqrt(rest) + along
+    if speed <= 0.0:
+        return math.inf
+    return max(vertical, level / speed)
+
+
+@numba.njit(cache=True)
+def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
+    """Put a node into the heap of `size` entries; there must be room for one more."""
+    hole = size
+    while hole > 0:
+        above = (hole - 1) >> 1
+        if keys[above] <= key:
+            break
+        keys[hole] = keys[above]
+        nodes[hole] = nodes[above]
+        hole = above
+    keys[hole] = key
+    nodes[hole] = node
+
+
+@numba.njit(cache=True)
+def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
+    """Drop the first of `size` entries; the last one sinks from the top."""
+    last = size - 1
+    key, node = keys[last], nodes[last]
+    hole = 0
+    below = 1
+    while below < last:
+        if below + 1 < last and keys[below + 1] < keys[below]:
+            below += 1
+        if keys[below] >= key:
+            break
+        keys[hole] = keys[below]
+        nodes[hole] = nodes[below]
+        hole = below
+        below = 2 * hole + 1
+    keys[hole] = key
+    nodes[hole] = node
+
+
+@numba.njit(cache=True)
+def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, IntArray]:
+    """The heap's arrays, twice as long if `needed` entries do not fit."""
+    if needed <= keys.size:
+        return keys, nodes
+    longer_keys = np.empty(2 * keys.size)
+    longer_nodes = np.empty(2 * keys.size, dtype=np.int64)
+    longer_keys[: keys.size] = keys
+    longer_nodes[: nodes.size] = nodes
+    return longer_keys, longer_nodes
+
+
+@numba.njit(cache=True)
+def search_grid(
+    shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
+    heights: FloatArray, legal: IntArray, winds: FloatArray, estimates: FloatArray,
+    performance: FloatArray, setting: FloatArray,
+    seeds: IntArray, seed_costs: FloatArray, targets: IntArray, target_costs: FloatArray,
+) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
+    """A* on a grid of layers, rows (to the north) and columns (to the east).
+
+    `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers, rows,
+    columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step k < m is
+    an edge; `winds` (nodes, 3) [m/s]; `estimates` (nodes,) in place of `remaining`, or empty. The search begins at
+    `seeds` with their costs and ends with the cheapest of `targets` plus its cost.
+
+    Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
+    every node reached (infinite elsewhere).
+    """
+    layers, rows, columns = shape
+    half = steps.shape[0] // 2
+    n = heights.size
+    reached = np.full(n, math.inf)
+    came_by = np.full(n, -1, dtype=np.int8)
+    closed = np.zeros(n, dtype=np.uint8)  # 1: expanded, 2: a target
+    keys = np.empty(max(1024, 4 * seeds.size))
+    nodes = np.empty(keys.size, dtype=np.int64)
+    size = 0
+    for i in range(targets.size):
+        closed[targets[i]] |= 2
+    for i in range(seeds.size):
+        node = seeds[i]
+        if seed_costs[i] < reached[node]:
+            reached[node] = seed_costs[i]
+            row, column = (node // columns) % rows, node % columns
+            if estimates.size > 0:
+                ahead = estimates[node]
+            else:
+                ahead = remaining(
+                    performance,
+                    setting,
+                    corner[0] + column * spacing,
+                    corner[1] + row * spacing,
+                    heights[node],
+                )
+            keys, nodes = _room(keys, nodes, size + 1)
+            _push(keys, nodes, size, seed_costs[i] + ahead, node)
+            size += 1
+    best, arrival, expanded = math.inf, -1, 0
+    while size > 0:
+        key, node = keys[0], nodes[0]
+        if key >= best:
+            break
+        _pop(keys, nodes, size)
+        size -= 1
+        if closed[node] & 1:
+            continue
+        if closed[node] & 2:
+            for i in range(targets.size):
+                if targets[i] == node and reached[node] + target_costs[i] < best:
+                    best = reached[node] + target_costs[i]
+                    arrival = node
+        closed[node] |= 1
+        expanded += 1
+        layer, row, column = node // (rows * columns), (node // columns) % rows, node % columns
+        ae, an, au = winds[node, 0], winds[node, 1], winds[node, 2]
+        keys, nodes = _room(keys, nodes, size + 2 * half)
+        for k in range(2 * half):
+            to_layer, to_row, to_column = layer + steps[k, 0], row + steps[k, 1], column + steps[k, 2]
+            if not (0 <= to_layer < layers and 0 <= to_row < rows and 0 <= to_column < columns):
+                continue
+            to = (to_layer * rows + to_row) * columns + to_column
+            if closed[to] & 1:
+                continue
+            mask = legal[node] >> k if k < half else legal[to] >> (k - half)
+            if mask & 1 == 0:
+                continue
+            cost = reached[node] + edge_cost(
+                performance, setting,
+                steps[k, 2] * spacing, steps[k, 1] * spacing, heights[to] - heights[node],
+                ae, an, au, winds[to, 0], winds[to, 1], winds[to, 2],
+            )  # fmt: skip
+            if cost < reached[to]:
+                reached[to] = cost
+                came_by[to] = k
+                if estimates.size > 0:
+                    ahead = estimates[to]
+                else:
+                    ahead = remaining(
+                        performance,
+                        setting,
+                        corner[0] + to_column * spacing,
+                        corner[1] + to_row * spacing,
+                        heights[to],
+                    )
+                _push(keys, nodes, size, cost + ahead, to)
+                size += 1
+    count = 0
+    node = arrival
+    while node >= 0:
+        count += 1
+        k = came_by[node]
+        node = -1 if k < 0 else node - ((steps[k, 0] * rows + steps[k, 1]) * columns + steps[k, 2])
+    path = np.empty(count, dtype=np.int64)
+    node = arrival
+    for i in range(count):
+        path[count - 1 - i] = node
+        k = came_by[node]
+        if k >= 0:
+            node -= (steps[k, 0] * rows + steps[k, 1]) * columns + steps[k, 2]
+    return path, best, expanded, reached
+
+
+@numba.njit(cache=True)
+def search_csr(
+    first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
+    performance: FloatArray, setting: FloatArray, start: int, goal: int,
+) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
+    """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
+
+    `points` (nodes, 3) [m], `winds` (nodes, 3) [m/s], `estimates` (nodes,) in place of `remaining`, or empty. Returns as
+    `search_grid` does.
+    """
+    n = points.shape[0]
+    reached = np.full(n, math.inf)
+    came_from = np.full(n, -1, dtype=np.int64)
+    closed = np.zeros(n, dtype=np.uint8)
+    keys = np.empty(1024)
+    nodes = np.empty(1024, dtype=np.int64)
+    reached[start] = 0.0
+    _push(keys, nodes, 0, 0.0, start)
+    size, expanded = 1, 0
+    while size > 0:
+        node = nodes[0]
+        _pop(keys, nodes, size)
+        size -= 1
+        if closed[node]:
+            continue
+        closed[node] = 1
+        expanded += 1
+        if node == goal:
+            break
+        keys, nodes = _room(keys, nodes, size + first[node + 1] - first[node])
+        for k in range(first[node], first[node + 1]):
+            to = neighbours[k]
+            if closed[to]:
+                continue
+            cost = reached[node] + edge_cost(
+                performance, setting,
+                points[to, 0] - points[node, 0], points[to, 1] - points[node, 1], points[to, 2] - points[node, 2],
+                winds[node, 0], winds[node, 1], winds[node, 2], winds[to, 0], winds[to, 1], winds[to, 2],
+            )  # fmt: skip
+            if cost < reached[to]:
+                reached[to] = cost
+                came_from[to] = node
+                if estimates.size > 0:
+                    ahead = estimates[to]
+                else:
+                    ahead = remaining(performance, setting, points[to, 0], points[to, 1], points[to, 2])
+                _push(keys, nodes, size, cost + ahead, to)
+                size += 1
+    count = 0
+    if closed[goal]:
+        node = goal
+        while node >= 0:
+            count += 1
+            node = came_from[node]
+    path = np.empty(count, dtype=np.int64)
+    node = goal
+    for i in range(count):
+        path[count - 1 - i] = node
+        node = came_from[node]
+    return path, reached[goal], expanded, reached

@@ -1,0 +1,146 @@
+"""The planner: the one place where terrain, wind, vehicle, veil, cost, search and shaping meet.
+
+request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shortcuts ─▶ flight ─▶ Plan
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cost import CostChoice, LegCost
+from gcs_windplan.errors import RequestError
+from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, fly
+from gcs_windplan.request import Request, Roadmap
+from gcs_windplan.search import WindyVeil, blow, find_path
+from gcs_windplan.shaping import shorten
+from gcs_windplan.siting import choose_area, choose_layers, choose_spacing, stand_sites
+from gcs_windplan.veil import SHARE_OF_GRID, Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """What finding the route took: nodes in the veil, nodes expanded, vertices of the graph's path, seconds."""
+
+    nodes: int
+    expanded: int
+    vertices: int
+    veil_seconds: float
+    search_seconds: float
+    shaping_seconds: float
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Plan:
+    """A route for a request: the polyline, its flight, and what it cost to find.
+
+    `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping.
+    """
+
+    request: Request
+    choice: CostChoice
+    flight: Flight
+    cost: float
+    graph_cost: float
+    effort: Effort
+
+    @property
+    def waypoints(self) -> tuple[Waypoint, ...]:
+        """The route's corners, from over the start to over the goal."""
+        return self.flight.waypoints
+
+    @property
+    def legs(self) -> tuple[Leg, ...]:
+        """The legs between them."""
+        return self.flight.legs
+
+    @property
+    def totals(self) -> Totals:
+        """Time, length, clearance of the whole route."""
+        return self.flight.totals
+
+    def __repr__(self) -> str:
+        minutes, seconds = divmod(round(self.totals.seconds), 60)
+        return (
+            f"Plan({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
+            f" {self.totals.length / 1000:.2f} km in {minutes} min {seconds:02d} s,"
+            f" clearance {self.totals.clearance:.1f} m)"
+        )
+
+
+def plan_route(request: Request) -> Plan:
+    """Plan the request's route by its own cost.
+
+    Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
+    `TerrainError` where the data do not cover the place, and `NoRouteError` where no route exists.
+    """
+    return plan_routes(request, [request.cost])[0]
+
+
+def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
+    """Plan the request's route once for each cost, on one and the same veil."""
+    rules = Clearance(
+        request.terrain,
+        request.clearance,
+        np.inf if request.max_height is None else request.max_height,
+        request.obstacles,
+        request.airspace,
+    )
+    layers = choose_layers(request)
+    sites, problems = stand_sites(request, rules, layers)
+    if problems:
+        raise RequestError([request.locate(problem) for problem in problems])
+    begin = time.perf_counter()
+    windy = blow(_lay_veil(request, rules, layers, sites), request.wind)
+    veil_seconds = time.perf_counter() - begin
+    return [_plan(request, choice, rules, windy, sites, veil_seconds) for choice in choices]
+
+
+def _lay_veil(
+    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray
+) -> GridVeil | PrmVeil:
+    """The veil that the request asks for."""
+    area = choose_area(request, sites)
+    graph = request.graph
+    if isinstance(graph, Roadmap):
+        nodes = graph.nodes
+        if nodes is None:
+            spacing = choose_spacing(request, area)
+            cells = (area.east - area.west) * (area.north - area.south) / spacing**2
+            nodes = max(2, round(SHARE_OF_GRID * cells))
+        return lay_prm(rules, area, nodes, graph.seed, layers, sites, graph.radius)
+    return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
+
+
+def _plan(
+    request: Request,
+    choice: CostChoice,
+    rules: Clearance,
+    windy: WindyVeil,
+    sites: FloatArray,
+    veil_seconds: float,
+) -> Plan:
+    """Search and shape each section between two sites, then fly the whole."""
+    route, vertices, expanded, total, graph_total = [sites[:1]], 1, 0, 0.0, 0.0
+    search_seconds = shaping_seconds = 0.0
+    for start, goal in pairwise(sites):
+        straight = float(np.linalg.norm(goal - start))
+        cost = LegCost(choice, request.wind, request.vehicle, windy.veil.edge_length, straight)
+        path = find_path(windy, cost, start, goal)
+        begin = time.perf_counter()
+        shaped = shorten(path.points, cost, rules)
+        shaping_seconds += time.perf_counter() - begin
+        search_seconds += path.seconds
+        expanded += path.expanded
+        vertices += len(path.points) - 1
+        total += cost.of_polyline(shaped)
+        graph_total += cost.of_polyline(path.points)
+        route.append(shaped[1:])
+    flight = fly(np.concatenate(route), request.frame, request.terrain, request.wind, request.vehicle)
+    effort = Effort(windy.veil.size, expanded, vertices, veil_seconds, search_seconds, shaping_seconds)
+    return Plan(request, choice, flight, total, graph_total, effort)

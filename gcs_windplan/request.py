@@ -1,0 +1,100 @@
+"""What the planner is asked: terrain, wind, vehicle, sites, limits, cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Literal, TypeAlias
+
+from gcs_windplan.cost import CostChoice
+from gcs_windplan.errors import Problem
+from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.terrain import Obstacles, Terrain
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.veil import Airspace
+from gcs_windplan.wind.field import WindField
+
+Finish: TypeAlias = Literal["land", "return", "hold"]
+AltitudeReference: TypeAlias = Literal["relative", "amsl"]
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """A place that the route must pass: start, via or goal.
+
+    `east` and `north` in the local frame [m]. Its height is `above_ground`, or `altitude` above mean sea level [m]; with
+    neither, the lowest layer of the veil. `field` names it in the mission file.
+    """
+
+    field: str
+    east: float
+    north: float
+    above_ground: float | None = None
+    altitude: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Uniform:
+    """A uniform grid; without a spacing [m] a 120th of the area's longer side."""
+
+    spacing: float | None = None
+    neighbours: int = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Roadmap:
+    """A probabilistic roadmap; without a number of nodes three quarters of the uniform grid's."""
+
+    nodes: int | None = None
+    seed: int = 1
+    radius: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """How the route becomes mission items: speed commands, altitudes above home or above sea level, which files."""
+
+    speed_changes: bool = True
+    altitude: AltitudeReference = "relative"
+    waypoints: bool = True
+    plan: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Request:
+    """One planning job.
+
+    `clearance` and `max_height` [m above ground] hold for every leg along its whole length. `layers` are heights above
+    ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. `locate` puts
+    file and line to a problem that names a field.
+    """
+
+    name: str
+    frame: LocalFrame
+    terrain: Terrain
+    wind: WindField
+    vehicle: Vehicle
+    start: Site
+    goal: Site
+    via: tuple[Site, ...] = ()
+    clearance: float = 30.0
+    max_height: float | None = None
+    cost: CostChoice = field(default_factory=CostChoice)
+    graph: Uniform | Roadmap = field(default_factory=Uniform)
+    layers: tuple[float, ...] = ()
+    margin: float | None = None
+    obstacles: Obstacles | None = None
+    airspace: Airspace = field(default_factory=Airspace)
+    departure: datetime | None = None
+    finish: Finish = "land"
+    export: Export = field(default_factory=Export)
+    locate: Callable[[Problem], Problem] = lambda problem: problem
+
+    @property
+    def sites(self) -> tuple[Site, ...]:
+        """Start, vias and goal, in the order they are passed."""
+        return (self.start, *self.via, self.goal)
+
+    def __repr__(self) -> str:
+        return f"Request({self.name!r}: {self.cost} over {self.terrain.name} in {self.wind.name})"

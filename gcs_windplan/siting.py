@@ -1,0 +1,111 @@
+"""Where the sites stand, and the veil's area, layers and spacing where the request leaves them open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.errors import Problem
+from gcs_windplan.request import Request, Site, Uniform
+from gcs_windplan.terrain import Extent
+from gcs_windplan.veil import Clearance
+
+_USUAL_ROOM = (
+    90.0  # [m] from the clearance up, where no height limit is given: 30 m and 120 m are the usual pair
+)
+_LAYERS = (0.2, 0.5, 0.8)  # of the room between clearance and height limit
+_NODES_ALONG = 120  # of the area's longer side
+_MARGIN = 0.25  # of the longest section between two sites
+_SLACK = 1e-6  # [m]
+
+
+def choose_layers(request: Request) -> tuple[float, ...]:
+    """The request's layers, or three between clearance and height limit [m above ground]."""
+    if request.layers:
+        return request.layers
+    limit = request.max_height if request.max_height is not None else request.clearance + _USUAL_ROOM
+    return tuple(request.clearance + share * (limit - request.clearance) for share in _LAYERS)
+
+
+def choose_area(request: Request, sites: FloatArray) -> Extent:
+    """The box of all sites with the margin around it, as far as there is terrain."""
+    margin = request.margin
+    if margin is None:
+        margin = _MARGIN * float(np.max(np.linalg.norm(np.diff(sites[:, :2], axis=0), axis=1)))
+    west, south = sites[:, :2].min(axis=0) - margin
+    east, north = sites[:, :2].max(axis=0) + margin
+    edge = request.terrain.extent
+    return Extent(max(west, edge.west), max(south, edge.south), min(east, edge.east), min(north, edge.north))
+
+
+def choose_spacing(request: Request, area: Extent) -> float:
+    """The uniform grid's spacing [m]: the request's, or so that the area's longer side has 120 nodes."""
+    if isinstance(request.graph, Uniform) and request.graph.spacing is not None:
+        return request.graph.spacing
+    return max(area.east - area.west, area.north - area.south) / _NODES_ALONG
+
+
+def stand_sites(
+    request: Request, rules: Clearance, layers: Sequence[float]
+) -> tuple[FloatArray, list[Problem]]:
+    """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them."""
+    problems = _limits(request, layers)
+    points = np.empty((len(request.sites), 3))
+    for i, site in enumerate(request.sites):
+        ground = float(rules.terrain.heights_at(np.array([[site.east, site.north]]))[0])
+        points[i] = site.east, site.north, _height(site, ground, layers[0])
+        problem = _misplaced(site, points[i], ground, request, rules)
+        if problem is not None:
+            problems.append(Problem(problem, site.field))
+    return points, problems
+
+
+def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
+    """Limits that contradict each other."""
+    problems = []
+    limit = math.inf if request.max_height is None else request.max_height
+    if request.clearance > limit:
+        problems.append(
+            Problem(f"{request.clearance:g} m is more than max_height, {limit:g} m: lower it", "clearance")
+        )
+    for i, layer in enumerate(layers):
+        if not request.clearance - _SLACK <= layer <= limit + _SLACK:
+            text = (
+                f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and max_height"
+            )
+            problems.append(Problem(f"{text} ({limit:g} m)", f"graph.layers.{i}"))
+    return problems
+
+
+def _height(site: Site, ground: float, lowest_layer: float) -> float:
+    """A site's height above mean sea level [m]."""
+    if site.altitude is not None:
+        return site.altitude
+    return ground + (lowest_layer if site.above_ground is None else site.above_ground)
+
+
+def _misplaced(
+    site: Site, point: FloatArray, ground: float, request: Request, rules: Clearance
+) -> str | None:
+    """What is wrong with a site's place or height, if anything."""
+    outside = rules.terrain.extent.misses(site.east, site.north)
+    if outside > 0:
+        return f"lies {outside / 1000:.2f} km outside of the terrain ({rules.terrain.name}): move it or add a tile"
+    if math.isnan(ground):
+        return f"the terrain ({rules.terrain.name}) has no data there: move it or use another DEM"
+    above = point[2] - ground
+    if above < 0:
+        return f"lies {-above:.1f} m below the ground ({ground:.1f} m above sea level there): raise it"
+    if above < rules.minimum - _SLACK:
+        return f"is {above:.1f} m above ground, less than the clearance of {rules.minimum:g} m: raise it or lower that"
+    if above > rules.maximum + _SLACK:
+        return f"is {above:.1f} m above ground, more than max_height, {rules.maximum:g} m: lower it or raise that"
+    broken = rules.airspace.broken_by(point, point)
+    if broken:
+        return f"lies where '{broken[0]}' forbids it: move the site, or correct the area or its floor and ceiling"
+    if rules.obstacles is not None and rules.obstacles.leg_margins(point[None], point[None])[0] < -_SLACK:
+        return "lies inside an obstacle or closer to it than its margin: move or raise it"
+    return None

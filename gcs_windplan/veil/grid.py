@@ -1,0 +1,154 @@
+"""The uniform veil: a square grid of nodes, laid over the terrain once or in several layers.
+
+Seen from above, a node's neighbours among the 8, 16 or 32 nearest directions (one quarter shown, node at o):
+
+    8:  . .    16: . 2 .   32: . 3 3 .
+        1 1        1 1 2       . 2 . 3
+        o 1        o 1 .       1 1 2 3
+                               o 1 . .
+
+To the layers above and below it has the node straight over it and that one's 8 neighbours.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
+from gcs_windplan.errors import InputError
+from gcs_windplan.terrain import Extent
+from gcs_windplan.veil.clearance import Clearance
+
+_BATCH = 1_000_000  # legs judged at a time, so that memory stays bounded
+_REACH: Final = {8: 1, 16: 2, 32: 3}
+
+
+def grid_steps(neighbours: int, layered: bool) -> IntArray:
+    """The moves in (layers, rows, columns), shape (2 m, 3); move k + m undoes move k."""
+    reach = _REACH.get(neighbours)
+    if reach is None:
+        raise InputError(f"{neighbours} neighbours are not offered, choose 8, 16 or 32")
+    span = range(-reach, reach + 1)
+    coprime = [(r, c) for r in span for c in span if math.gcd(r, c) == 1]
+    forward = [(0, r, c) for r, c in coprime if r > 0 or (r == 0 and c > 0)]
+    if layered:
+        forward += [(1, r, c) for r in (-1, 0, 1) for c in (-1, 0, 1)]
+    steps = np.array(forward, dtype=np.int64)
+    return np.concatenate([steps, -steps])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GridVeil:
+    """Nodes in layers, rows (to the north) and columns (to the east).
+
+    `corner` east and north of the first node, `spacing` [m]; `heights` (layers, rows, columns) above mean sea level [m],
+    NaN over unknown ground; `steps` as from `grid_steps`; `legal` (nodes,) bit k set: the leg of step k is clear.
+    """
+
+    corner: FloatArray
+    spacing: float
+    heights: FloatArray
+    steps: IntArray
+    legal: IntArray
+    clearance: Clearance
+
+    @property
+    def size(self) -> int:
+        """How many nodes there are."""
+        return self.heights.size
+
+    @property
+    def edge_length(self) -> float:
+        """The length of an ordinary edge [m]."""
+        return self.spacing
+
+    @property
+    def points(self) -> FloatArray:
+        """All nodes, shape (n, 3): layers, then rows, then columns."""
+        return self.points_of(np.arange(self.size))
+
+    def points_of(self, nodes: IntArray) -> FloatArray:
+        """Nodes by number, shape (n, 3)."""
+        _, rows, columns = self.heights.shape
+        place = nodes % (rows * columns)
+        east = self.corner[0] + (place % columns) * self.spacing
+        north = self.corner[1] + (place // columns) * self.spacing
+        return np.column_stack([east, north, self.heights.ravel()[nodes]])
+
+    def near(self, place: FloatArray, radius: float) -> IntArray:
+        """The nodes of all layers within `radius` [m] of a place in plan."""
+        layers, rows, columns = self.heights.shape
+        column, row = (place[:2] - self.corner) / self.spacing
+        reach = radius / self.spacing
+        cs = np.arange(max(0, math.ceil(column - reach)), min(columns, math.floor(column + reach) + 1))
+        rs = np.arange(max(0, math.ceil(row - reach)), min(rows, math.floor(row + reach) + 1))
+        r, c = np.meshgrid(rs, cs, indexing="ij")
+        close = np.hypot(r - row, c - column) <= reach
+        sheet = (r * columns + c)[close]
+        return (np.arange(layers)[:, None] * (rows * columns) + sheet[None, :]).ravel()
+
+
+def lay_grid(
+    clearance: Clearance, area: Extent, spacing: float, layers: Sequence[float], neighbours: int = 16
+) -> GridVeil:
+    """Lay a uniform veil over an area, each layer at its height above ground [m], and judge every leg once."""
+    columns = 1 + math.floor((area.east - area.west) / spacing + 1e-9)
+    rows = 1 + math.floor((area.north - area.south) / spacing + 1e-9)
+    corner = np.array(
+        [
+            0.5 * (area.west + area.east - (columns - 1) * spacing),
+            0.5 * (area.south + area.north - (rows - 1) * spacing),
+        ]
+    )
+    east, north = np.meshgrid(corner[0] + np.arange(columns) * spacing, corner[1] + np.arange(rows) * spacing)
+    places = np.column_stack([east.ravel(), north.ravel()])
+    heights = np.stack([clearance.lifted(places, layer)[:, 2].reshape(rows, columns) for layer in layers])
+    steps = grid_steps(neighbours, layered=len(layers) > 1)
+    legal = np.zeros(heights.size, dtype=np.uint32)
+    for k in range(len(steps) // 2):
+        for nodes, starts, ends in _legs(corner, spacing, heights, steps[k]):
+            legal[nodes] |= (clearance.breaches(starts, ends) == 0).astype(np.uint32) << np.uint32(k)
+    return GridVeil(corner, spacing, heights, steps, legal, clearance)
+
+
+def _legs(
+    corner: FloatArray, spacing: float, heights: FloatArray, step: IntArray
+) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
+    """All legs of one step in batches: the nodes where they start, their starts and ends (n, 3)."""
+    layers, rows, columns = heights.shape
+    up, north, east = (int(move) for move in step)
+    row_from, row_to = max(0, -north), rows - max(0, north)
+    column_from, column_to = max(0, -east), columns - max(0, east)
+    if row_to <= row_from or column_to <= column_from:
+        return
+    batch = max(1, _BATCH // (column_to - column_from))
+    cs = np.arange(column_from, column_to)
+    for layer in range(layers - up):
+        for row in range(row_from, row_to, batch):
+            rs = np.arange(row, min(row + batch, row_to))[:, None]
+            x, y = np.broadcast_arrays(corner[0] + cs * spacing, corner[1] + rs * spacing)
+            starts = np.stack([x, y, heights[layer, rs, cs]], axis=-1).reshape(-1, 3)
+            ends = np.stack(
+                [x + east * spacing, y + north * spacing, heights[layer + up, rs + north, cs + east]], axis=-1
+            ).reshape(-1, 3)
+            yield ((layer * rows + rs) * columns + cs).ravel(), starts, ends
+
+
+def breaches_around(veil: GridVeil, nodes: IntArray) -> tuple[IntArray, FlagArray]:
+    """All legs that leave the given nodes: where they lead and what they break (0 where they are clear)."""
+    layers, rows, columns = veil.heights.shape
+    layer, row, column = nodes // (rows * columns), (nodes // columns) % rows, nodes % columns
+    led, flags = [], []
+    for up, north, east in veil.steps:
+        to_layer, to_row, to_column = layer + up, row + north, column + east
+        within = (to_layer >= 0) & (to_layer < layers) & (to_row >= 0) & (to_row < rows)
+        within &= (to_column >= 0) & (to_column < columns)
+        to = ((to_layer * rows + to_row) * columns + to_column)[within]
+        led.append(to)
+        flags.append(veil.clearance.breaches(veil.points_of(nodes[within]), veil.points_of(to)))
+    return np.concatenate(led), np.concatenate(flags)
