@@ -32,13 +32,18 @@ def choose_layers(request: Request) -> tuple[float, ...]:
 
 def choose_area(request: Request, sites: FloatArray) -> Extent:
     """The box of all sites with the margin around it, as far as there is terrain."""
-    margin = request.margin
-    if margin is None:
-        margin = _MARGIN * float(np.max(np.linalg.norm(np.diff(sites[:, :2], axis=0), axis=1)))
+    margin = choose_margin(sites, request.margin)
     west, south = sites[:, :2].min(axis=0) - margin
     east, north = sites[:, :2].max(axis=0) + margin
     edge = request.terrain.extent
     return Extent(max(west, edge.west), max(south, edge.south), min(east, edge.east), min(north, edge.north))
+
+
+def choose_margin(sites: FloatArray, margin: float | None) -> float:
+    """How far the veil reaches beyond the sites (n, 2 or more) [m]: the given margin, or a quarter of the way."""
+    if margin is not None:
+        return margin
+    return _MARGIN * float(np.max(np.linalg.norm(np.diff(sites[:, :2], axis=0), axis=1)))
 
 
 def choose_spacing(request: Request, area: Extent) -> float:

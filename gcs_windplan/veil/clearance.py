@@ -66,5 +66,5 @@ class Clearance:
         ground = self.terrain.heights_at(places)
         z = ground + height
         if self.obstacles is not None:
-            z = np.maximum(z, self.obstacles.tops_at(places) + self.minimum)
+            z = np.maximum(z, self.obstacles.clear_heights_at(places, self.minimum))
         return np.column_stack([places[:, :2], z])

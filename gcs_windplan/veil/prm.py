@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
 from gcs_windplan.terrain import Extent
@@ -66,6 +65,8 @@ def lay_prm(
 
     `sites` (k, 3) become the first k nodes. The same seed gives the same roadmap.
     """
+    from scipy.spatial import cKDTree  # half a second of import, for roadmaps only
+
     places = np.random.default_rng(seed).uniform(
         (area.west, area.south), (area.east, area.north), size=(nodes, 2)
     )

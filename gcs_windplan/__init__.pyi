@@ -1,0 +1,13 @@
+from .cost import CostChoice as CostChoice
+from .errors import InputError as InputError
+from .errors import NoRouteError as NoRouteError
+from .errors import WindplanError as WindplanError
+from .geodesy import GeoPoint as GeoPoint
+from .geodesy import LocalFrame as LocalFrame
+from .mission.planned import mission_of as mission_of
+from .planner import Plan as Plan
+from .planner import plan_route as plan_route
+from .planner import plan_routes as plan_routes
+from .request import Request as Request
+from .spec import read_mission as read_mission
+from .vehicle import Vehicle as Vehicle

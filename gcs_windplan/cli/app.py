@@ -1,0 +1,56 @@
+"""The command `gcs-windplan`: one verb a file, errors turned into exit codes in one place."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from gcs_windplan.cli import compare, plan, schema
+from gcs_windplan.errors import InputError, NoRouteError
+
+_EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
+
+app = typer.Typer(
+    help="Drone missions that know the wind and the ground.",
+    epilog=_EPILOG,
+    rich_markup_mode=None,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+)
+app.command("plan", help=plan.HELP, epilog=_EPILOG)(plan.plan)
+app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
+app.command("schema", help=schema.HELP)(schema.schema)
+
+
+def _print_version(wanted: bool) -> None:
+    """Print the installed version and leave."""
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"gcs-windplan {version('gcs-windplan')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Take the options that come before the verb."""
+
+
+def main() -> None:
+    """Run the command line and exit with its code."""
+    try:
+        app()
+    except InputError as error:
+        for problem in error.problems:
+            typer.echo(f"error: {problem}", err=True)
+        sys.exit(2)
+    except NoRouteError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(1)

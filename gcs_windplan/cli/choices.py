@@ -1,0 +1,55 @@
+"""Options that several verbs share, and what they change in a request."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeAlias
+
+import typer
+
+if TYPE_CHECKING:
+    from gcs_windplan.request import Request
+
+MissionFile: TypeAlias = Annotated[Path, typer.Argument(metavar="MISSION.yaml", help="The mission file.")]
+Airspeed: TypeAlias = Annotated[
+    str | None, typer.Option(metavar="SPEED", help="Airspeed in place of the file's: 12, '24 kt'.")
+]
+Folder: TypeAlias = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="Where to write; default out/NAME.")
+]
+
+
+def read_request(mission: Path, airspeed: str | None) -> Request:
+    """The request of a mission file, with the command line's airspeed."""
+    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.spec import read_mission
+    from gcs_windplan.spec.units import SPEED, read_quantity
+
+    speed = None
+    if airspeed is not None:
+        try:
+            speed = read_quantity(airspeed, SPEED)
+        except ValueError as error:
+            raise InputError(Problem(str(error), "--airspeed")) from None
+    request = read_mission(mission)
+    if speed is None:
+        return request
+    return replace(request, vehicle=replace(request.vehicle, airspeed=speed))
+
+
+def output_folder(folder: Path | None, request: Request) -> Path:
+    """The folder to write into, made if need be."""
+    from gcs_windplan.errors import InputError, Problem
+
+    chosen = folder if folder is not None else Path("out") / file_stem(request)
+    try:
+        chosen.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(Problem(f"the folder cannot be made ({error.strerror})", file=chosen)) from None
+    return chosen
+
+
+def file_stem(request: Request) -> str:
+    """The mission's name as the name of files."""
+    return request.name.strip().lower().replace(" ", "_")

@@ -1,0 +1,29 @@
+"""`gcs-windplan compare`: every cost side by side on one veil."""
+
+from __future__ import annotations
+
+import typer
+
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, output_folder, read_request
+
+HELP = "Plan by every cost; print time, length, waypoints and search time side by side; write compare.png."
+
+
+def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = None) -> None:
+    """Plan by each cost and print a table."""
+    request = read_request(mission, airspeed)
+
+    from gcs_windplan.cli.plan import write
+    from gcs_windplan.cli.tables import print_comparison
+    from gcs_windplan.cost import COST_NAMES, CostChoice
+    from gcs_windplan.planner import plan_routes
+    from gcs_windplan.review import draw_map
+
+    hybrid = request.cost if request.cost.name == "hybrid" else CostChoice("hybrid")
+    choices = [hybrid if name == "hybrid" else CostChoice(name) for name in COST_NAMES]
+    plans = plan_routes(request, choices)
+    picture = draw_map(plans)
+    folder = output_folder(output, request)
+    print_comparison(plans)
+    for path in write({"compare.png": picture}, folder):
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,78 @@
+"""`gcs-windplan plan`: a mission file becomes a route, mission files and pictures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, output_folder, read_request
+
+if TYPE_CHECKING:
+    from gcs_windplan.planner import Plan
+
+HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
+
+
+def plan(
+    mission: MissionFile,
+    cost: Annotated[
+        str | None,
+        typer.Option(metavar="COST", help="distance, angle, hybrid or time in place of the file's."),
+    ] = None,
+    airspeed: Airspeed = None,
+    output: Folder = None,
+    speed_changes: Annotated[
+        bool | None,
+        typer.Option("--speed-changes/--no-speed-changes", help="Command each leg's ground speed, or none."),
+    ] = None,
+) -> None:
+    """Plan and write."""
+    request = read_request(mission, airspeed)
+
+    from gcs_windplan.cli.tables import print_legs
+    from gcs_windplan.cost import CostChoice
+    from gcs_windplan.planner import plan_route
+
+    if cost is not None and cost != request.cost.name:
+        request = replace(request, cost=CostChoice(cost))  # type: ignore[arg-type]
+    if speed_changes is not None:
+        request = replace(request, export=replace(request.export, speed_changes=speed_changes))
+    planned = plan_route(request)
+    files = render(planned)
+    folder = output_folder(output, request)
+    print_legs(planned)
+    for path in write(files, folder):
+        typer.echo(f"wrote {path}")
+
+
+def render(planned: Plan) -> dict[str, str | bytes]:
+    """The content of every file of a plan, by file name; nothing is written yet."""
+    from gcs_windplan.formats import format_plan, format_waypoints
+    from gcs_windplan.formats.summary import format_summary
+    from gcs_windplan.mission.planned import mission_of
+    from gcs_windplan.review import draw_map, draw_profile
+
+    request = planned.request
+    stem = file_stem(request)
+    mission = mission_of(planned)
+    files: dict[str, str | bytes] = {}
+    if request.export.waypoints:
+        files[f"{stem}.waypoints"] = format_waypoints(mission)
+    if request.export.plan:
+        files[f"{stem}.plan"] = format_plan(mission)
+    files["summary.json"] = format_summary(planned)
+    files["map.png"] = draw_map([planned])
+    files["profile.png"] = draw_profile(planned)
+    return files
+
+
+def write(files: dict[str, str | bytes], folder: Path) -> list[Path]:
+    """Write files into a folder, each whole or not at all."""
+    from gcs_windplan.formats import write_atomically
+
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    return [folder / name for name in files]

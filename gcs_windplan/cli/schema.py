@@ -1,0 +1,23 @@
+"""`gcs-windplan schema`: what may stand in a mission file."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+HELP = "Print every field of the mission file with its unit, default and meaning."
+
+
+def schema(
+    json: Annotated[bool, typer.Option("--json", help="As JSON Schema, for editors.")] = False,
+) -> None:
+    """Print the schema's reference."""
+    from gcs_windplan.spec.reference import json_schema, schema_reference
+
+    if json:
+        from json import dumps
+
+        typer.echo(dumps(json_schema(), indent=1, ensure_ascii=False))
+    else:
+        typer.echo(schema_reference())

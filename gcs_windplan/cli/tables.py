@@ -1,0 +1,76 @@
+"""Plans as tables on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from gcs_windplan.planner import Plan
+
+_WIDTH = 100  # where the output is no terminal
+
+
+def clock(seconds: float) -> str:
+    """Minutes and seconds: 12:05."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d}"
+
+
+def _console() -> Console:
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
+
+
+def print_legs(plan: Plan) -> None:
+    """The legs of a plan, a row each, and the totals."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    for name in ("leg", "track °", "heading °", "length m", "climb m", "to m AMSL", "ground m/s", "wind along",
+                 "across m/s", "time", "AGL m"):  # fmt: skip
+        table.add_column(name, justify="right")
+    for leg, target in zip(plan.legs, plan.waypoints[1:], strict=True):
+        table.add_row(
+            f"{leg.number}", f"{leg.track_deg:03.0f}", f"{leg.heading_deg:03.0f}", f"{leg.length:.0f}",
+            f"{leg.climb:+.0f}", f"{target.altitude:.1f}", f"{leg.ground_speed:.1f}", f"{leg.wind_along:+.1f}",
+            f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f} - {leg.height:.0f}",
+        )  # fmt: skip
+    console = _console()
+    console.print(table)
+    for line in summary_lines(plan):
+        console.print(line, soft_wrap=True)
+
+
+def summary_lines(plan: Plan) -> list[str]:
+    """The totals of a plan, in words."""
+    totals, effort = plan.totals, plan.effort
+    return [
+        f"{plan.request.name}, least {plan.choice}: {len(plan.waypoints)} waypoints, {totals.length / 1000:.2f} km,"
+        f" {clock(totals.seconds)} min en route (take-off {clock(totals.takeoff_seconds)},"
+        f" landing {clock(totals.landing_seconds)} more)",
+        f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
+        f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
+        f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
+        f" {effort.search_seconds:.2f} s, {effort.vertices} vertices shaped in {effort.shaping_seconds:.2f} s",
+    ]
+
+
+def print_comparison(plans: Sequence[Plan]) -> None:
+    """Several plans of one request, a row each."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    table.add_column("least", justify="left")
+    for name in ("time min", "against best", "length km", "energy Wh", "waypoints", "climb m", "AGL m",
+                 "expanded", "search s"):  # fmt: skip
+        table.add_column(name, justify="right")
+    best = min(plan.totals.seconds for plan in plans)
+    for plan in plans:
+        totals, effort = plan.totals, plan.effort
+        table.add_row(
+            str(plan.choice), clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %",
+            f"{totals.length / 1000:.2f}", "not known", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
+            f"{totals.clearance:.0f} - {totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
+        )  # fmt: skip
+    _console().print(table)

@@ -1,0 +1,43 @@
+"""A plan's figures as JSON, for scripts."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gcs_windplan.planner import Plan
+
+
+def format_summary(plan: Plan) -> str:
+    """The plan as JSON: SI units, angles in degrees from true north, wind towards where it blows.
+
+    `search` holds counts only: the same plan gives the same text, whatever the machine.
+    """
+    request = plan.request
+    summary: dict[str, Any] = {
+        "name": request.name,
+        "cost": str(plan.choice),
+        "cost_value": plan.cost,
+        "graph_cost_value": plan.graph_cost,
+        "departure": request.departure.isoformat() if request.departure else None,
+        "vehicle": asdict(request.vehicle),
+        "wind": request.wind.name,
+        "terrain": {"name": request.terrain.name, "vertical_datum": request.terrain.vertical_datum},
+        "limits": {"clearance": request.clearance, "max_height": request.max_height},
+        "totals": asdict(plan.totals),
+        "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
+        "legs": [asdict(leg) for leg in plan.legs],
+        "search": {
+            "nodes": plan.effort.nodes,
+            "expanded": plan.effort.expanded,
+            "path_vertices": plan.effort.vertices,
+        },
+    }
+    return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:
+    """A waypoint with its place spread out."""
+    return fields.pop("point") | fields

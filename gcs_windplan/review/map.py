@@ -1,0 +1,211 @@
+"""The route from above: over shaded relief, with the wind, as a PNG."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LightSource
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from matplotlib.patheffects import Normal, Stroke
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.planner import Plan
+from gcs_windplan.review.png import png_bytes
+from gcs_windplan.terrain import Extent
+
+_PIXELS = 500  # of relief along the longer side
+_ARROWS = 18  # along the longer side
+_LABEL_ROOM = 0.025  # of the route's extent, between two numbers
+_ROUTES = (
+    "#0072b2",
+    "#d55e00",
+    "#cc79a7",
+    "#111111",
+)  # Okabe and Ito 2008: told apart by colour-blind readers
+_DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (6, 1.5, 1.5, 1.5)))
+
+
+def draw_map(plans: Sequence[Plan], dpi: int = 130) -> bytes:
+    """One or several routes of one request on a map, as PNG.
+
+    A single route is coloured by its ground speed; several are told apart by colour and dash.
+    """
+    plan = plans[0]
+    extent = _frame_of(plans)
+    depth = (extent.north - extent.south) / (extent.east - extent.west)
+    figure = Figure(figsize=(9.0, 1.5 + 7.4 * depth), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    _draw_relief(axes, plan, extent)
+    _draw_areas(axes, plan)
+    _draw_wind(axes, plan, extent)
+    if len(plans) == 1:
+        lines = _draw_by_speed(axes, plan)
+        figure.colorbar(lines, ax=axes, label="ground speed [m/s]", shrink=0.75, pad=0.01)
+    else:
+        _draw_side_by_side(axes, plans)
+    _draw_sites(axes, plan)
+    _dress(axes, plans, extent)
+    return png_bytes(figure, dpi)
+
+
+def _frame_of(plans: Sequence[Plan]) -> Extent:
+    """A box [m] around all routes, with a tenth of air, not narrower than half as wide as long."""
+    points = np.concatenate([_line(plan) for plan in plans])
+    low, high = points.min(axis=0), points.max(axis=0)
+    centre, size = (low + high) / 2, high - low
+    size = np.maximum(size * 1.2, 0.62 * size.max())
+    (west, south), (east, north) = centre - size / 2, centre + size / 2
+    edge = plans[0].request.terrain.extent
+    return Extent(max(west, edge.west), max(south, edge.south), min(east, edge.east), min(north, edge.north))
+
+
+def _line(plan: Plan) -> FloatArray:
+    """The route in plan, (n, 2) [m]."""
+    return np.array([(w.east, w.north) for w in plan.waypoints])
+
+
+def _grid(extent: Extent, along: int) -> tuple[FloatArray, FloatArray]:
+    """Places on a regular grid of about `along` along the longer side, as two 2-D arrays."""
+    width, depth = extent.east - extent.west, extent.north - extent.south
+    cell = max(width, depth) / along
+    east = np.linspace(extent.west, extent.east, max(2, round(width / cell)))
+    north = np.linspace(extent.south, extent.north, max(2, round(depth / cell)))
+    x, y = np.meshgrid(east, north)
+    return x, y
+
+
+def _draw_relief(axes: Any, plan: Plan, extent: Extent) -> None:
+    """Shaded relief, light from the north-west, tinted by height; unknown ground stays blank."""
+    x, y = _grid(extent, _PIXELS)
+    ground = plan.request.terrain.heights_at(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    cell = x[0, 1] - x[0, 0]
+    known = np.isfinite(ground)
+    filled = np.where(known, ground, np.nanmean(ground) if known.any() else 0.0)
+    relief = float(np.ptp(filled))
+    exaggeration = 1.0 if relief == 0 else min(8.0, max(1.0, 0.12 * max(np.ptp(x), np.ptp(y)) / relief))
+    light = LightSource(azdeg=315, altdeg=45)
+    shade = light.hillshade(filled, vert_exag=exaggeration, dx=cell, dy=-cell)
+    tint = mpl.colormaps["gist_earth"](0.35 + 0.55 * (filled - filled.min()) / max(relief, 1e-9))[..., :3]
+    colours = 0.45 + 0.55 * tint
+    colours = colours * (0.55 + 0.45 * shade[..., None])
+    image = np.dstack([np.clip(colours, 0, 1), known.astype(float)])
+    axes.imshow(
+        image,
+        origin="lower",
+        extent=[v / 1000 for v in (extent.west, extent.east, extent.south, extent.north)],
+        interpolation="bilinear",
+        aspect="equal",
+    )
+
+
+def _draw_areas(axes: Any, plan: Plan) -> None:
+    """Keep-out areas hatched, keep-in areas outlined, obstacles filled."""
+    for prism in plan.request.airspace.keep_out:
+        patch = Polygon(
+            prism.corners / 1000, closed=True, fc=(0.8, 0.2, 0, 0.18), ec="#b22200", hatch="///", lw=1.2
+        )
+        axes.add_patch(patch)
+    for prism in plan.request.airspace.keep_in:
+        patch = Polygon(prism.corners / 1000, closed=True, fill=False, ec="#005a32", lw=1.6, ls="--")
+        axes.add_patch(patch)
+
+
+def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
+    """Arrows towards where the wind blows, at the route's mean height above ground."""
+    inset = 0.5 / _ARROWS * max(extent.east - extent.west, extent.north - extent.south)
+    inner = Extent(extent.west + inset, extent.south + inset, extent.east - inset, extent.north - inset)
+    x, y = _grid(inner, _ARROWS)
+    places = np.column_stack([x.ravel(), y.ravel()])
+    ground = plan.request.terrain.heights_at(places)
+    above = float(np.mean([w.above_ground for w in plan.waypoints]))
+    known = np.isfinite(ground)
+    points = np.column_stack([places, ground + above])[known]
+    wind = plan.request.wind.at(points)
+    speed = np.hypot(wind[:, 0], wind[:, 1])
+    strongest = float(speed.max(initial=0.0))
+    if strongest == 0:
+        return
+    arrows = axes.quiver(
+        points[:, 0] / 1000, points[:, 1] / 1000, wind[:, 0], wind[:, 1],
+        color="#1b2a41", alpha=0.75, pivot="mid", scale=strongest * _ARROWS * 1.25, width=0.0022, zorder=3,
+    )  # fmt: skip
+    nice = float(f"{strongest:.1g}")
+    label = f"{nice:g} m/s wind, {above:.0f} m above ground"
+    axes.quiverkey(
+        arrows, 0.04, 1.025, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9}
+    )
+
+
+def _draw_by_speed(axes: Any, plan: Plan) -> LineCollection:
+    """The route coloured by each leg's ground speed, with its waypoints."""
+    line = _line(plan) / 1000
+    segments = np.stack([line[:-1], line[1:]], axis=1)
+    axes.plot(line[:, 0], line[:, 1], color="black", lw=5.5, solid_capstyle="round", zorder=4)
+    lines = LineCollection(list(segments), cmap="plasma", lw=3.4, capstyle="round", zorder=5)
+    lines.set_array(np.array([leg.ground_speed for leg in plan.legs]))
+    axes.add_collection(lines)
+    axes.plot(line[:, 0], line[:, 1], "o", ms=4.5, mfc="white", mec="black", mew=0.9, zorder=6)
+    _number_waypoints(axes, plan)
+    return lines
+
+
+def _number_waypoints(axes: Any, plan: Plan) -> None:
+    """Numbers at the waypoints, as far as they do not lie on each other or on a site's name."""
+    line = _line(plan) / 1000
+    apart = _LABEL_ROOM * float(np.ptp(line, axis=0).max())
+    taken = [np.array([site.east, site.north]) / 1000 for site in plan.request.sites]
+    for waypoint, place in zip(plan.waypoints, line, strict=True):
+        if min(np.linalg.norm(place - other) for other in taken) >= apart:
+            _label(axes, place[0], place[1], str(waypoint.number), size=7.5, offset=(5, 5))
+            taken.append(place)
+
+
+def _draw_side_by_side(axes: Any, plans: Sequence[Plan]) -> None:
+    """Several routes, told apart by colour and dash."""
+    for i, plan in enumerate(plans):
+        line = _line(plan) / 1000
+        minutes, seconds = divmod(round(plan.totals.seconds), 60)
+        axes.plot(
+            line[:, 0], line[:, 1], color=_ROUTES[i % 4], ls=_DASHES[i % 4], lw=2.4, zorder=5 + i,
+            label=f"{plan.choice}: {minutes}:{seconds:02d} min",
+            path_effects=[Stroke(linewidth=4.4, foreground="white"), Normal()],
+        )  # fmt: skip
+    axes.legend(loc="best", framealpha=0.9, fontsize=9)
+
+
+def _draw_sites(axes: Any, plan: Plan) -> None:
+    """Start, vias and goal, named."""
+    for site in plan.request.sites:
+        x, y = site.east / 1000, site.north / 1000
+        marker = {"start": "^", "goal": "s"}.get(site.field, "D")
+        axes.plot(x, y, marker, ms=9, mfc="#f0e442", mec="black", mew=1.2, zorder=12)
+        _label(axes, x, y, site.field.replace("via.", "via "), size=10, offset=(8, -12))
+
+
+def _label(axes: Any, x: float, y: float, text: str, size: float, offset: tuple[int, int]) -> None:
+    """A word on the map with a white halo."""
+    axes.annotate(
+        text, (x, y), xytext=offset, textcoords="offset points", fontsize=size, zorder=13,
+        path_effects=[Stroke(linewidth=2.4, foreground="white"), Normal()],
+    )  # fmt: skip
+
+
+def _dress(axes: Any, plans: Sequence[Plan], extent: Extent) -> None:
+    """Axes, title and limits."""
+    plan = plans[0]
+    axes.set_xlim(extent.west / 1000, extent.east / 1000)
+    axes.set_ylim(extent.south / 1000, extent.north / 1000)
+    axes.set_xlabel("east of the frame's origin [km]")
+    axes.set_ylabel("north [km]")
+    totals = plan.totals
+    minutes, seconds = divmod(round(totals.seconds), 60)
+    what = f"least {plan.choice}, {totals.length / 1000:.2f} km in {minutes}:{seconds:02d} min"
+    head = what if len(plans) == 1 else "routes of least " + ", ".join(p.choice.name for p in plans)
+    axes.set_title(f"{plan.request.name}: {head}", fontsize=12, loc="left", pad=24)

@@ -1,0 +1,175 @@
+"""From a checked mission file to a request: terrain and wind are read, places come into the local frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cost import CostChoice
+from gcs_windplan.errors import InputError, MissionFileError, Problem
+from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.request import Export, Request, Roadmap, Site, Uniform
+from gcs_windplan.siting import choose_margin
+from gcs_windplan.spec.model import AreaModel, MissionModel
+from gcs_windplan.spec.parsing import MissionDocument, read_document
+from gcs_windplan.spec.places import place_of
+from gcs_windplan.spec.terrain import build_obstacles, build_terrain
+from gcs_windplan.spec.wind import build_wind
+from gcs_windplan.spec.world import SiteModel
+from gcs_windplan.terrain import Extent
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.veil import Airspace, Prism
+
+_T = TypeVar("_T")
+_SPARE = 500.0  # [m] of terrain read beyond the veil, so that sites just outside of it get their own message
+
+
+def read_mission(path: Path | str) -> Request:
+    """The request in a mission file, terrain and wind read.
+
+    Raises `MissionFileError` with every problem of the file, or the error of a terrain or wind that cannot be used, with
+    the line that names it.
+    """
+    document = read_document(Path(path))
+    model = document.model
+    frame = _frame(model)
+    sites = _sites(model, frame)
+    area = _area(model, sites)
+    terrain = _placed(document, "terrain", lambda: build_terrain(document, frame, area))
+    problems: list[Problem] = []
+    obstacles = _collected(document, "obstacles", problems, lambda: build_obstacles(document, frame, terrain))
+    airspace = Airspace(
+        _prisms(document, "keep_out", model.keep_out, frame, problems),
+        _prisms(document, "keep_in", model.keep_in, frame, problems),
+    )
+    wind = _collected(document, "wind", problems, lambda: build_wind(document, frame, terrain, area))
+    if problems or wind is None:
+        raise MissionFileError(problems)
+    graph = model.graph
+    return Request(
+        name=model.name,
+        frame=frame,
+        terrain=terrain,
+        wind=wind,
+        vehicle=Vehicle(**model.vehicle.model_dump()),
+        start=sites[0],
+        goal=sites[-1],
+        via=tuple(sites[1:-1]),
+        clearance=model.clearance,
+        max_height=model.max_height,
+        cost=CostChoice(**model.cost.model_dump()),
+        graph=Roadmap(**graph.prm.model_dump()) if graph.prm else Uniform(**graph.uniform.model_dump()),
+        layers=graph.layers or (),
+        margin=graph.margin,
+        obstacles=obstacles,
+        airspace=airspace,
+        departure=model.departure,
+        finish=model.finish,
+        export=Export(**model.export.model_dump()),
+        locate=_locator(document),
+    )
+
+
+def _locator(document: MissionDocument) -> Callable[[Problem], Problem]:
+    """What puts file, line and column to a problem that names a field."""
+
+    def locate(problem: Problem) -> Problem:
+        if problem.file is not None or problem.field is None:
+            return problem
+        return document.problem(problem.field, problem.message)
+
+    return locate
+
+
+def _placed(document: MissionDocument, field: str, build: Callable[[], _T]) -> _T:
+    """What `build` returns; its input errors get the field's file, line and column."""
+    try:
+        return build()
+    except InputError as error:
+        raise type(error)([_at(document, field, problem) for problem in error.problems]) from error
+
+
+def _at(document: MissionDocument, field: str, problem: Problem) -> Problem:
+    """A problem with the place of a field in the mission file, the other file named in the message."""
+    if problem.file == document.file:
+        return problem
+    named = problem.field if problem.field is not None and problem.field.startswith(field) else field
+    return document.problem(named, str(replace(problem, field=None)))
+
+
+def _collected(
+    document: MissionDocument, field: str, problems: list[Problem], build: Callable[[], _T]
+) -> _T | None:
+    """What `build` returns; its input errors are added to the problems instead."""
+    try:
+        return _placed(document, field, build)
+    except InputError as error:
+        problems.extend(error.problems)
+        return None
+
+
+def _frame(model: MissionModel) -> LocalFrame:
+    """The local frame: about the declared origin, or the middle of all sites."""
+    origin = model.terrain.origin
+    if origin is not None:
+        return LocalFrame(GeoPoint(origin.latitude, origin.longitude))
+    sites = (model.start, *model.via, model.goal)
+    latitudes = [site.latitude for site in sites if site.latitude is not None]
+    longitudes = [site.longitude for site in sites if site.longitude is not None]
+    offsets = [(longitude - longitudes[0] + 180) % 360 - 180 for longitude in longitudes]
+    middle = longitudes[0] + (min(offsets) + max(offsets)) / 2
+    return LocalFrame(GeoPoint((min(latitudes) + max(latitudes)) / 2, (middle + 180) % 360 - 180))
+
+
+def _sites(model: MissionModel, frame: LocalFrame) -> list[Site]:
+    """Start, vias and goal in the local frame."""
+    named: list[tuple[str, SiteModel]] = [("start", model.start)]
+    named += [(f"via.{i}", via) for i, via in enumerate(model.via)]
+    named += [("goal", model.goal)]
+    return [Site(name, *place_of(site, frame), site.height, site.altitude) for name, site in named]
+
+
+def _area(model: MissionModel, sites: list[Site]) -> Extent:
+    """The box that terrain and wind are read for: the sites with the veil's margin, and something to spare."""
+    places = np.array([(site.east, site.north) for site in sites])
+    margin = choose_margin(places, model.graph.margin) + _SPARE
+    west, south = places.min(axis=0) - margin
+    east, north = places.max(axis=0) + margin
+    return Extent(float(west), float(south), float(east), float(north))
+
+
+def _prisms(
+    document: MissionDocument,
+    field: str,
+    areas: tuple[AreaModel, ...],
+    frame: LocalFrame,
+    problems: list[Problem],
+) -> tuple[Prism, ...]:
+    """Keep-out or keep-in areas in the local frame; those that are no simple polygon become problems."""
+    prisms = []
+    for i, area in enumerate(areas):
+        floor = -np.inf if area.floor is None else area.floor
+        ceiling = np.inf if area.ceiling is None else area.ceiling
+        corners = _corners(area, frame)
+        prism = _collected(
+            document,
+            f"{field}.{i}.polygon",
+            problems,
+            lambda name=area.name, c=corners, f=floor, t=ceiling: Prism(name, c, f, t),  # type: ignore[misc]
+        )
+        if prism is not None:
+            prisms.append(prism)
+    return tuple(prisms)
+
+
+def _corners(area: AreaModel, frame: LocalFrame) -> FloatArray:
+    """An area's corners (n, 2) [m]."""
+    if area.polygon.east_north is not None:
+        return np.array(area.polygon.east_north, dtype=np.float64)
+    places = np.array(area.polygon.latitude_longitude, dtype=np.float64)
+    return frame.to_local(places[:, 0], places[:, 1])
