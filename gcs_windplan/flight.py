@@ -58,7 +58,11 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Totals:
-    """The sum of all legs: lengths and heights in m, time in s; take-off and landing apart."""
+    """The sum of all legs: lengths and heights in m, time in s.
+
+    The take-off to the first waypoint and the landing under the last one are apart, straight up and down at the vehicle's
+    rates. The landing counts only for a mission that lands there.
+    """
 
     seconds: float
     distance: float

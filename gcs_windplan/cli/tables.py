@@ -49,13 +49,22 @@ def summary_lines(plan: Plan) -> list[str]:
     totals, effort = plan.totals, plan.effort
     return [
         f"{plan.request.name}, least {plan.choice}: {len(plan.waypoints)} waypoints, {totals.length / 1000:.2f} km,"
-        f" {clock(totals.seconds)} min en route (take-off {clock(totals.takeoff_seconds)},"
-        f" landing {clock(totals.landing_seconds)} more)",
+        f" {clock(totals.seconds)} min en route, {_ends(plan)}",
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
         f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
         f" {effort.search_seconds:.2f} s, {effort.vertices} vertices shaped in {effort.shaping_seconds:.2f} s",
     ]
+
+
+def _ends(plan: Plan) -> str:
+    """What comes before and after the route."""
+    takeoff = f"take-off {clock(plan.totals.takeoff_seconds)}"
+    if plan.request.finish == "land":
+        return f"{takeoff} and landing {clock(plan.totals.landing_seconds)} more"
+    if plan.request.finish == "return":
+        return f"{takeoff} more; the return to launch is not counted"
+    return f"{takeoff} more"
 
 
 def print_comparison(plans: Sequence[Plan]) -> None:

@@ -26,6 +26,7 @@ def format_summary(plan: Plan) -> str:
         "wind": request.wind.name,
         "terrain": {"name": request.terrain.name, "vertical_datum": request.terrain.vertical_datum},
         "limits": {"clearance": request.clearance, "max_height": request.max_height},
+        "finish": request.finish,
         "totals": asdict(plan.totals),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
@@ -40,4 +41,5 @@ def format_summary(plan: Plan) -> str:
 
 def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:
     """A waypoint with its place spread out."""
-    return fields.pop("point") | fields
+    point: dict[str, Any] = fields.pop("point")
+    return point | fields

@@ -8,7 +8,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
@@ -20,6 +20,7 @@ from gcs_windplan.review.png import png_bytes
 from gcs_windplan.terrain import Extent
 
 _PIXELS = 500  # of relief along the longer side
+_WIDTH = 7.4  # [inch] of the map itself
 _ARROWS = 18  # along the longer side
 _LABEL_ROOM = 0.025  # of the route's extent, between two numbers
 _ROUTES = (
@@ -39,7 +40,7 @@ def draw_map(plans: Sequence[Plan], dpi: int = 130) -> bytes:
     plan = plans[0]
     extent = _frame_of(plans)
     depth = (extent.north - extent.south) / (extent.east - extent.west)
-    figure = Figure(figsize=(9.0, 1.5 + 7.4 * depth), layout="constrained")
+    figure = Figure(figsize=(_WIDTH + 1.6, 1.5 + _WIDTH * depth), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     _draw_relief(axes, plan, extent)
@@ -56,11 +57,11 @@ def draw_map(plans: Sequence[Plan], dpi: int = 130) -> bytes:
 
 
 def _frame_of(plans: Sequence[Plan]) -> Extent:
-    """A box [m] around all routes, with a tenth of air, not narrower than half as wide as long."""
+    """A box [m] around all routes with a tenth of air, its sides not too different."""
     points = np.concatenate([_line(plan) for plan in plans])
     low, high = points.min(axis=0), points.max(axis=0)
     centre, size = (low + high) / 2, high - low
-    size = np.maximum(size * 1.2, 0.62 * size.max())
+    size = np.maximum(size * 1.2, 0.72 * size.max())
     (west, south), (east, north) = centre - size / 2, centre + size / 2
     edge = plans[0].request.terrain.extent
     return Extent(max(west, edge.west), max(south, edge.south), min(east, edge.east), min(north, edge.north))
@@ -112,6 +113,9 @@ def _draw_areas(axes: Any, plan: Plan) -> None:
             prism.corners / 1000, closed=True, fc=(0.8, 0.2, 0, 0.18), ec="#b22200", hatch="///", lw=1.2
         )
         axes.add_patch(patch)
+    if plan.request.obstacles is not None:
+        seen_from_above = plan.request.obstacles.triangles[:, :, :2] / 1000
+        axes.add_collection(PolyCollection(list(seen_from_above), facecolors="#5b3a5e", edgecolors="#2d1d2f", lw=0.4))
     for prism in plan.request.airspace.keep_in:
         patch = Polygon(prism.corners / 1000, closed=True, fill=False, ec="#005a32", lw=1.6, ls="--")
         axes.add_patch(patch)
@@ -138,8 +142,9 @@ def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     )  # fmt: skip
     nice = float(f"{strongest:.1g}")
     label = f"{nice:g} m/s wind, {above:.0f} m above ground"
+    above_axes = 1 + 0.18 / (_WIDTH * (extent.north - extent.south) / (extent.east - extent.west))
     axes.quiverkey(
-        arrows, 0.04, 1.025, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9}
+        arrows, 0.05, above_axes, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9}
     )
 
 
