@@ -1,0 +1,8 @@
+"""The air: analytic fields, height profiles, and forecasts on grids.
+
+The names are fetched when they are first asked for, so that only those who need netCDF4 or numba import them.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,243 @@
+"""The mission file's schema: vehicle, sites, limits, cost, graph, areas and the mission itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from gcs_windplan.spec.rules import DEFAULT_CLEARANCE, mission_contradictions
+from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one
+from gcs_windplan.spec.values import (
+    SIGNED_LENGTH,
+    WEIGHT,
+    Airspeed,
+    FileStem,
+    Flag,
+    Height,
+    Label,
+    Latitude,
+    Length,
+    Longitude,
+    NodeCount,
+    PositiveLength,
+    PositiveSpeed,
+    Seed,
+    UtcTime,
+    Weight,
+)
+from gcs_windplan.spec.world import ObstacleModel, SiteModel, TerrainModel, WindModel
+
+
+class VehicleModel(Section):
+    """The vehicle and its autopilot."""
+
+    type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
+    autopilot: Literal["ardupilot", "px4"] = Field(
+        default="ardupilot", description="firmware the mission is for"
+    )
+    airspeed: Airspeed = Field(description="cruise speed through the air", examples=["12 m/s"])
+    climb: PositiveSpeed = Field(default=2.5, description="largest speed upwards")
+    descent: PositiveSpeed = Field(default=1.5, description="largest speed downwards")
+    speed_model: Literal["triangle", "paper"] = Field(
+        default="triangle",
+        description="ground speed in wind: the exact wind triangle, or the paper's equation (12)",
+    )
+
+
+class CostModel(Section):
+    """What the search adds up."""
+
+    expects: ClassVar[str] = "distance, angle, hybrid or time, or {name: hybrid, distance: 0.1, angle: 0.9},"
+
+    name: Literal["distance", "angle", "hybrid", "time"] = Field(
+        description="the cost; `cost: time` is short for `cost: {name: time}`", examples=["time"]
+    )
+    distance: Weight = Field(default=0.1, description="weight of the distance; only with hybrid")
+    angle: Weight = Field(default=0.9, description="weight of the angle to the wind; only with hybrid")
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A name alone is a cost without weights."""
+        return {"name": data} if isinstance(data, str) else data
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """Weights of a cost that has none, or only zeros."""
+        weights = [name for name in ("distance", "angle") if name in fields]
+        if fields.get("name") in ("distance", "angle", "time"):
+            for weight in weights:
+                yield Finding(
+                    (weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True
+                )
+        elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
+            yield Finding(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler.resolve_ref_schema(handler(core))
+        long = dict(schema)
+        schema.clear()
+        schema.update(anyOf=[long["properties"]["name"], long])
+        return schema
+
+
+class UniformModel(Section):
+    """A regular grid of nodes."""
+
+    spacing: PositiveLength | None = Field(
+        default=None, description="between nodes; default: chosen from the distance to fly"
+    )
+    neighbours: Literal[8, 16, 32] = Field(default=16, description="how many neighbours a node has")
+
+
+class PrmModel(Section):
+    """A probabilistic road map: nodes at random places."""
+
+    nodes: NodeCount | None = Field(
+        default=None, description="how many; default: three quarters of a uniform grid's"
+    )
+    seed: Seed = Field(default=1, description="the same seed gives the same nodes")
+    radius: PositiveLength | None = Field(
+        default=None, description="how far neighbours lie apart at most; default: chosen"
+    )
+
+
+class GraphModel(Section):
+    """The veil: nodes above the terrain, and how they are joined. Without `prm` it is uniform."""
+
+    uniform: UniformModel | None = Field(default=None, description="a regular grid; the default")
+    prm: PrmModel | None = Field(default=None, description="random nodes; beside it no `uniform`")
+    layers: tuple[PositiveLength, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="heights above ground of the sheets of nodes, upwards; default: chosen",
+    )
+    margin: Height | None = Field(
+        default=None, description="how far the veil reaches beyond the sites; default: chosen"
+    )
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """Without a road map the graph is uniform."""
+        if isinstance(data, dict) and not ("prm" in data or "uniform" in data):
+            return {**data, "uniform": {}}
+        return data
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """Both kinds of graph."""
+        yield from at_most_one(fields, "uniform", "prm")
+
+
+class PolygonModel(Section):
+    """The corners of an area."""
+
+    expects: ClassVar[str] = (
+        "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
+    )
+
+    latitude_longitude: tuple[tuple[Latitude, Longitude], ...] | None = Field(
+        default=None, min_length=3, description="at least 3 corners; a list alone is short for this"
+    )
+    east_north: tuple[tuple[Length, Length], ...] | None = Field(
+        default=None,
+        min_length=3,
+        description="at least 3 corners in the local frame; needs `terrain.origin`",
+    )
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A list alone holds latitudes and longitudes."""
+        return {"latitude_longitude": data} if isinstance(data, list | tuple) else data
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """Both kinds of corners, or none."""
+        names = ("latitude_longitude", "east_north")
+        if not any(name in fields for name in names):
+            yield Finding((), f"corners are missing; {cls.expects} belongs here")
+        yield from at_most_one(fields, *names)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler.resolve_ref_schema(handler(core))
+        long = dict(schema)
+        schema.clear()
+        schema.update(anyOf=[long["properties"]["latitude_longitude"]["anyOf"][0], long])
+        return schema
+
+
+class AreaModel(Section):
+    """An area with, if wanted, a floor and a ceiling."""
+
+    name: Label = Field(description="for messages and maps", examples=["school"])
+    polygon: PolygonModel = Field(
+        description="its corners", examples=["[[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]"]
+    )
+    floor: Length | None = Field(default=None, description="above mean sea level; default: the ground")
+    ceiling: Length | None = Field(
+        default=None, description="above mean sea level, above the floor; default: none"
+    )
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """A ceiling that is not above the floor."""
+        floor, ceiling = (SIGNED_LENGTH.read_or_none(fields.get(name)) for name in ("floor", "ceiling"))
+        if floor is not None and ceiling is not None and ceiling <= floor:
+            yield Finding(("ceiling",), f"{ceiling:g} m is not above the floor, {floor:g} m")
+
+
+class ExportModel(Section):
+    """What is written, and how."""
+
+    speed_changes: Flag = Field(default=True, description="set the speed at each leg")
+    altitude: Literal["relative", "amsl"] = Field(
+        default="relative", description="altitudes of mission items: above home, or above mean sea level"
+    )
+    waypoints: Flag = Field(default=True, description="write a .waypoints file")
+    plan: Flag = Field(default=True, description="write a .plan file")
+
+
+_PLACE = "{latitude: 38.1, longitude: 23.7}"
+
+
+class MissionModel(Section):
+    """A mission file."""
+
+    name: FileStem = Field(description="of the mission and of the files written", examples=["ridge-crossing"])
+    vehicle: VehicleModel = Field(description="what flies", examples=["{airspeed: 12 m/s}"])
+    terrain: TerrainModel = Field(
+        description="the ground; exactly one of dem, sample, mesh, surface", examples=["{dem: tile.tif}"]
+    )
+    obstacles: tuple[ObstacleModel, ...] = Field(
+        default=(), description="closed meshes that stand on the terrain"
+    )
+    wind: WindModel = Field(
+        description="exactly one of calm, constant, paper, netcdf", examples=["{calm: true}"]
+    )
+    start: SiteModel = Field(description="where the route begins", examples=[_PLACE])
+    goal: SiteModel = Field(description="where the route ends", examples=[_PLACE])
+    via: tuple[SiteModel, ...] = Field(default=(), description="places to pass, in this order")
+    clearance: PositiveLength = Field(
+        default=DEFAULT_CLEARANCE, description="smallest vertical distance of any leg to the ground"
+    )
+    max_height: PositiveLength | None = Field(
+        default=None, description="largest height above ground of any leg"
+    )
+    cost: CostModel = Field(default=CostModel(name="time"), description="what the route is to be the best in")
+    graph: GraphModel = Field(
+        default=GraphModel(uniform=UniformModel()), description="the nodes that are searched"
+    )
+    keep_out: tuple[AreaModel, ...] = Field(default=(), description="areas no leg enters")
+    keep_in: tuple[AreaModel, ...] = Field(default=(), description="areas no leg leaves")
+    departure: UtcTime | None = Field(default=None, description="the time of take-off; kept in UTC")
+    finish: Literal["land", "return", "hold"] = Field(default="land", description="what to do at the goal")
+    export: ExportModel = Field(default=ExportModel(), description="what is written")
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """What sections say against each other."""
+        return mission_contradictions(fields)

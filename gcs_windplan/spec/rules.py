@@ -1,0 +1,160 @@
+"""What sections of a mission file say against each other, as far as no terrain is needed to tell.
+
+The rules read the file's plain values, so that they speak even where other fields are wrong; a value that is
+wrong by itself is passed over here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+from gcs_windplan.spec.section import Fields, Finding, Path
+from gcs_windplan.spec.values import CLEARANCE, HEIGHT, LATITUDE, LONGITUDE, SIGNED_LENGTH
+
+DEFAULT_CLEARANCE: Final = 30.0  # [m]
+_SAME_DEGREES: Final = 1e-7  # about a centimetre, and MAVLink's resolution of a coordinate
+_SAME_METRES: Final = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """The heights above ground between which every leg stays, None where they are not known [m]."""
+
+    lowest: float | None
+    highest: float | None
+
+
+def mission_contradictions(fields: Fields) -> Iterator[Finding]:
+    """Everything that the sections of a mission say against each other."""
+    limits = _Limits(
+        CLEARANCE.read_or_none(fields.get("clearance", DEFAULT_CLEARANCE)),
+        CLEARANCE.read_or_none(fields.get("max_height")),
+    )
+    if limits.lowest is not None and limits.highest is not None and limits.lowest > limits.highest:
+        yield Finding(
+            ("max_height",),
+            f"{limits.highest:g} m is below the clearance of {limits.lowest:g} m; raise one, lower the other",
+        )
+    else:
+        yield from _layers_outside(fields, limits)
+        yield from _sites_outside(fields, limits)
+    yield from _layers_out_of_order(fields)
+    yield from _local_without_origin(fields)
+    yield from _equal_neighbours(fields)
+
+
+def _layers_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
+    for index, layer in _layers(fields):
+        if layer is not None and (complaint := _outside(layer, limits)):
+            yield Finding(("graph", "layers", index), complaint)
+
+
+def _layers_out_of_order(fields: Fields) -> Iterator[Finding]:
+    layers = list(_layers(fields))
+    for (_, below), (index, above) in pairwise(layers):
+        if below is not None and above is not None and above <= below:
+            yield Finding(
+                ("graph", "layers", index), f"layers go upwards: {above:g} m is not above {below:g} m"
+            )
+
+
+def _sites_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
+    for path, site in _sites(fields):
+        height = HEIGHT.read_or_none(site.get("height"))
+        if height is not None and (complaint := _outside(height, limits)):
+            yield Finding((*path, "height"), complaint)
+
+
+def _outside(height: float, limits: _Limits) -> str | None:
+    if limits.lowest is not None and height < limits.lowest:
+        return f"{height:g} m is below the clearance of {limits.lowest:g} m that every leg keeps"
+    if limits.highest is not None and height > limits.highest:
+        return f"{height:g} m is above max_height, {limits.highest:g} m"
+    return None
+
+
+def _local_without_origin(fields: Fields) -> Iterator[Finding]:
+    """Local places mean nothing on a DEM whose file does not say where the local origin is.
+
+    A mesh or a surface without an origin is a problem of the terrain's own.
+    """
+    terrain = _section(fields, "terrain")
+    if "origin" in terrain or not ("dem" in terrain or "sample" in terrain):
+        return
+    advice = "needs terrain.origin, which says where the local origin is"
+    for path, place in _sites(fields):
+        yield from _local_place(path, place, advice)
+    for index, obstacle in _entries(fields, "obstacles"):
+        if "at" in obstacle:
+            yield from _local_place(("obstacles", index, "at"), _section(obstacle, "at"), advice)
+        else:
+            yield Finding(
+                ("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}"
+            )
+    for kind in ("keep_out", "keep_in"):
+        for index, area in _entries(fields, kind):
+            if "east_north" in _section(area, "polygon"):
+                yield Finding((kind, index, "polygon", "east_north"), advice, at_key=True)
+
+
+def _local_place(path: Path, place: Fields, advice: str) -> Iterator[Finding]:
+    local = [name for name in ("east", "north") if name in place]
+    if local and not ("latitude" in place or "longitude" in place):
+        yield Finding((*path, local[0]), advice, at_key=True)
+
+
+def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
+    """Sites that follow each other at the same place; the goal comes last."""
+    sites = [(path, _position(site)) for path, site in _sites(fields)]
+    for (before, here), (path, there) in pairwise(sites):
+        if here and there and _same(here, there):
+            name = ".".join(str(part) for part in before)
+            yield Finding(path, f"is the same place as {name}; there is nothing to fly in between")
+
+
+def _same(here: tuple[str, float, float], there: tuple[str, float, float]) -> bool:
+    tolerance = _SAME_METRES if here[0] == "local" else _SAME_DEGREES
+    return here[0] == there[0] and all(
+        abs(a - b) < tolerance for a, b in zip(here[1:], there[1:], strict=True)
+    )
+
+
+def _position(site: Fields) -> tuple[str, float, float] | None:
+    latitude, longitude = (
+        LATITUDE.read_or_none(site.get("latitude")),
+        LONGITUDE.read_or_none(site.get("longitude")),
+    )
+    if latitude is not None and longitude is not None:
+        return "geographic", latitude, longitude
+    east, north = (SIGNED_LENGTH.read_or_none(site.get(name)) for name in ("east", "north"))
+    return None if east is None or north is None else ("local", east, north)
+
+
+def _sites(fields: Fields) -> Iterator[tuple[Path, Fields]]:
+    """Start, what is passed, goal, in this order; what is not there or no section is an empty one."""
+    yield ("start",), _section(fields, "start")
+    via = fields.get("via")
+    for index in range(len(via) if isinstance(via, list | tuple) else 0):
+        yield ("via", index), _section(dict(_entries(fields, "via")), index)
+    yield ("goal",), _section(fields, "goal")
+
+
+def _layers(fields: Fields) -> Iterator[tuple[int, float | None]]:
+    layers = _section(fields, "graph").get("layers")
+    for index, layer in enumerate(layers if isinstance(layers, list | tuple) else ()):
+        yield index, CLEARANCE.read_or_none(layer)
+
+
+def _section(fields: Mapping[str, object] | Mapping[int, Fields], name: str | int) -> Fields:
+    found = dict[object, object](fields).get(name)  # type: ignore[arg-type]
+    return found if isinstance(found, Mapping) else {}
+
+
+def _entries(fields: Fields, name: str) -> Iterator[tuple[int, Fields]]:
+    found = fields.get(name)
+    for index, entry in enumerate(found if isinstance(found, list | tuple) else ()):
+        if isinstance(entry, Mapping):
+            yield index, entry

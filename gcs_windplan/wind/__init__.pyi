@@ -1,0 +1,14 @@
+from .analytic import Calm as Calm
+from .analytic import ConstantWind as ConstantWind
+from .analytic import Diverging as Diverging
+from .analytic import Jet as Jet
+from .analytic import JetReading as JetReading
+from .analytic import Rotation as Rotation
+from .field import Ground as Ground
+from .field import WindField as WindField
+from .gridded import GriddedWind as GriddedWind
+from .netcdf import read_netcdf as read_netcdf
+from .profile import LogLaw as LogLaw
+from .profile import PowerLaw as PowerLaw
+from .profile import ProfileLaw as ProfileLaw
+from .profile import ProfileWind as ProfileWind
