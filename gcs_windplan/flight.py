@@ -20,8 +20,8 @@ from gcs_windplan.wind.field import WindField
 class Waypoint:
     """A corner of the route.
 
-    `altitude` above mean sea level and `above_ground` [m]; `seconds` from the first waypoint to the arrival here; `east`
-    and `north` in the local frame [m].
+    `altitude` above mean sea level and `above_ground` [m]; `seconds` from the first waypoint to the arrival here;
+    `east` and `north` in the local frame [m].
     """
 
     number: int
@@ -37,9 +37,10 @@ class Waypoint:
 class Leg:
     """From one waypoint to the next.
 
-    Angles in degrees from true north, lengths in m, speeds in m/s. `distance` is level, `length` along the slope, `climb`
-    the gain in height. `ground_speed` is the level mean over the leg. `wind_along` is positive from behind, `wind_across`
-    from left to right, both means. `clearance` is the smallest and `height` the largest height above ground.
+    Angles in degrees from true north, lengths in m, speeds in m/s. `distance` is level, `length` along the slope,
+    `climb` the gain in height. `ground_speed` is the level mean over the leg. `wind_along` is positive from behind,
+    `wind_across` from left to right, both means. `clearance` is the smallest and `height` the largest height above
+    ground.
     """
 
     number: int
@@ -60,8 +61,8 @@ class Leg:
 class Totals:
     """The sum of all legs: lengths and heights in m, time in s.
 
-    The take-off to the first waypoint and the landing under the last one are apart, straight up and down at the vehicle's
-    rates. The landing counts only for a mission that lands there.
+    The take-off to the first waypoint and the landing under the last one are apart, straight up and down at the
+    vehicle's rates. The landing counts only for a mission that lands there.
     """
 
     seconds: float
@@ -94,9 +95,7 @@ def fly(points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField
     _refuse_unflyable(parts)
     heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
-    legs = tuple(
-        _leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts))
-    )
+    legs = tuple(_leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts)))
     waypoints = _waypoints(points, frame, terrain, parts.seconds)
     return Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
 
@@ -108,8 +107,8 @@ def _refuse_unflyable(parts: LegIntegrals) -> None:
         i = int(stopped[0])
         raise NoRouteError(
             f"leg {i + 1} cannot be flown: the wind along it is {parts.along[i]:.1f} m/s along and"
-            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places. Use a finer graph or more airspeed.",
-            {"wind": len(stopped)},
+            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places. Use a finer graph or more
+            airspeed.", {"wind": len(stopped)},
         )
 
 
@@ -138,9 +137,7 @@ def _leg(i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, c
     )
 
 
-def _waypoints(
-    points: FloatArray, frame: LocalFrame, terrain: Terrain, seconds: FloatArray
-) -> tuple[Waypoint, ...]:
+def _waypoints(points: FloatArray, frame: LocalFrame, terrain: Terrain, seconds: FloatArray) -> tuple[Waypoint, ...]:
     """The polyline's corners as places on earth, with the time of arrival."""
     latitudes, longitudes = frame.to_geographic(points)
     ground = terrain.heights_at(points)

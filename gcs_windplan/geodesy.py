@@ -73,9 +73,7 @@ class LocalFrame:
         x, y = places[:, 0], places[:, 1]
         reach = float(np.max(np.hypot(x, y), initial=0.0))
         if reach > _REACH:
-            raise InputError(
-                f"a place {reach / 1000:.0f} km from the origin of the local frame is too far away"
-            )
+            raise InputError(f"a place {reach / 1000:.0f} km from the origin of the local frame is too far away")
         latitude = np.full(x.shape, self.origin.latitude_deg)
         longitude = np.full(x.shape, self.origin.longitude_deg)
         for _ in range(20):

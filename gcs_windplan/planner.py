@@ -19,7 +19,7 @@ from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, fly
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.search import WindyVeil, blow, find_path
 from gcs_windplan.shaping import shorten
-from gcs_windplan.siting import choose_area, choose_layers, choose_spacing, stand_sites
+from gcs_windplan.siting import choose_area, choose_layers, choose_spacing, stand_sites, windless_sites
 from gcs_windplan.veil import SHARE_OF_GRID, Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
 
 
@@ -93,6 +93,7 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     )
     layers = choose_layers(request)
     sites, problems = stand_sites(request, rules, layers)
+    problems = problems or windless_sites(request, sites)
     if problems:
         raise RequestError([request.locate(problem) for problem in problems])
     begin = time.perf_counter()
@@ -101,9 +102,7 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     return [_plan(request, choice, rules, windy, sites, veil_seconds) for choice in choices]
 
 
-def _lay_veil(
-    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray
-) -> GridVeil | PrmVeil:
+def _lay_veil(request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray) -> GridVeil | PrmVeil:
     """The veil that the request asks for."""
     area = choose_area(request, sites)
     graph = request.graph

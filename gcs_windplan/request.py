@@ -23,8 +23,8 @@ AltitudeReference: TypeAlias = Literal["relative", "amsl"]
 class Site:
     """A place that the route must pass: start, via or goal.
 
-    `east` and `north` in the local frame [m]. Its height is `above_ground`, or `altitude` above mean sea level [m]; with
-    neither, the lowest layer of the veil. `field` names it in the mission file.
+    `east` and `north` in the local frame [m]. Its height is `above_ground`, or `altitude` above mean sea level [m];
+    with neither, the lowest layer of the veil. `field` names it in the mission file.
     """
 
     field: str

@@ -13,9 +13,7 @@ from gcs_windplan.request import Request, Site, Uniform
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance
 
-_USUAL_ROOM = (
-    90.0  # [m] from the clearance up, where no height limit is given: 30 m and 120 m are the usual pair
-)
+_USUAL_ROOM = 90.0  # [m] from the clearance up, where no height limit is given: 30 m and 120 m are the usual pair
 _LAYERS = (0.2, 0.5, 0.8)  # of the room between clearance and height limit
 _NODES_ALONG = 120  # of the area's longer side
 _MARGIN = 0.25  # of the longest section between two sites
@@ -53,9 +51,7 @@ def choose_spacing(request: Request, area: Extent) -> float:
     return max(area.east - area.west, area.north - area.south) / _NODES_ALONG
 
 
-def stand_sites(
-    request: Request, rules: Clearance, layers: Sequence[float]
-) -> tuple[FloatArray, list[Problem]]:
+def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
     """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them."""
     problems = _limits(request, layers)
     points = np.empty((len(request.sites), 3))
@@ -73,14 +69,10 @@ def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
     problems = []
     limit = math.inf if request.max_height is None else request.max_height
     if request.clearance > limit:
-        problems.append(
-            Problem(f"{request.clearance:g} m is more than max_height, {limit:g} m: lower it", "clearance")
-        )
+        problems.append(Problem(f"{request.clearance:g} m is more than max_height, {limit:g} m: lower it", "clearance"))
     for i, layer in enumerate(layers):
         if not request.clearance - _SLACK <= layer <= limit + _SLACK:
-            text = (
-                f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and max_height"
-            )
+            text = f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and max_height"
             problems.append(Problem(f"{text} ({limit:g} m)", f"graph.layers.{i}"))
     return problems
 
@@ -92,9 +84,7 @@ def _height(site: Site, ground: float, lowest_layer: float) -> float:
     return ground + (lowest_layer if site.above_ground is None else site.above_ground)
 
 
-def _misplaced(
-    site: Site, point: FloatArray, ground: float, request: Request, rules: Clearance
-) -> str | None:
+def _misplaced(site: Site, point: FloatArray, ground: float, request: Request, rules: Clearance) -> str | None:
     """What is wrong with a site's place or height, if anything."""
     outside = rules.terrain.extent.misses(site.east, site.north)
     if outside > 0:
@@ -114,3 +104,14 @@ def _misplaced(
     if rules.obstacles is not None and rules.obstacles.leg_margins(point[None], point[None])[0] < -_SLACK:
         return "lies inside an obstacle or closer to it than its margin: move or raise it"
     return None
+
+
+def windless_sites(request: Request, points: FloatArray) -> list[Problem]:
+    """The sites (n, 3) at which the wind is not known."""
+    unknown = np.isnan(request.wind.at(points)[:, 0])
+    text = "lies above the highest level of the wind ({}): lower it, or take a file with higher levels"
+    return [
+        Problem(text.format(request.wind.name), site.field)
+        for site, gone in zip(request.sites, unknown, strict=True)
+        if gone
+    ]

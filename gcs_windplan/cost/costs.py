@@ -1,9 +1,9 @@
 """The costs that a route is chosen by.
 
 In the search an edge costs what the kernels in `kernels/best_first.py` say. For legs of any length, as shaping makes
-them, each cost has a form that adds up along a polyline and equals the search's for ordinary edges: the angle, which the
-paper counts once an edge, becomes its mean along the leg times the leg's length in ordinary edges. Counted once a leg,
-the angle would call one long leg against the wind better than ten short ones down it.
+them, each cost has a form that adds up along a polyline and equals the search's for ordinary edges: the angle, which
+the paper counts once an edge, becomes its mean along the leg times the leg's length in ordinary edges. Counted once a
+leg, the angle would call one long leg against the wind better than ten short ones down it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost.sampling import LegIntegrals, integrate, performance_of
+from gcs_windplan.cost.sampling import integrate, performance_of
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import best_first as kernel
 from gcs_windplan.kernels.triangle import mean_angles
@@ -93,9 +93,10 @@ class LegCost:
         setting[kernel.DISTANCE_WEIGHT] = self.choice.distance
         setting[kernel.STRAIGHT] = self.straight
         setting[kernel.GOAL_E : kernel.GOAL_Z + 1] = goal
+        winds = winds[~np.isnan(winds[:, 0])]
         centre, radius = enclosing_ball(winds[:, :2])
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
-            centre, radius = np.zeros(2), float(np.max(np.hypot(winds[:, 0], winds[:, 1])))
+            centre, radius = np.zeros(2), float(np.max(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
         setting[kernel.BALL_E : kernel.BALL_N + 1] = centre
         setting[kernel.BALL_RADIUS] = radius
         setting[kernel.BALL_UP] = np.max(winds[:, 2], initial=0.0)

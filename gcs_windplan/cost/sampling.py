@@ -46,9 +46,7 @@ def integrate(
     return LegIntegrals(table[:, 0], table[:, 1], table[:, 2], table[:, 3])
 
 
-def _sample(
-    starts: FloatArray, vectors: FloatArray, resolution: float
-) -> tuple[IntArray, FloatArray, FloatArray]:
+def _sample(starts: FloatArray, vectors: FloatArray, resolution: float) -> tuple[IntArray, FloatArray, FloatArray]:
     """Quadrature points on each leg: where each leg's begin, their weights (k,), the points (k, 3)."""
     lengths = np.linalg.norm(vectors, axis=1)
     panels = np.clip(np.ceil(lengths / resolution), 1, _MOST_PANELS).astype(np.int64)

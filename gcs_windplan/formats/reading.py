@@ -58,9 +58,7 @@ def read_text(path: str | os.PathLike[str], repairs: Repairs) -> str:
         reason = (error.strerror or str(error)).lower()
         raise FormatError(Problem(f"cannot be read ({reason}): check the name", file=Path(path))) from error
     if b"\0" in data:
-        raise FormatError(
-            Problem("is not plain text (it has zero bytes): save it as UTF-8 text", file=Path(path))
-        )
+        raise FormatError(Problem("is not plain text (it has zero bytes): save it as UTF-8 text", file=Path(path)))
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:

@@ -253,6 +253,4 @@ def _shifted(item: MissionItem, shift: int) -> MissionItem:
         return item
     p1, *rest = item.params
     place = item.latitude_deg, item.longitude_deg, item.altitude
-    return MissionItem(
-        item.frame, item.command, (p1 + shift, rest[0], rest[1], rest[2]), *place, item.autocontinue
-    )
+    return MissionItem(item.frame, item.command, (p1 + shift, rest[0], rest[1], rest[2]), *place, item.autocontinue)

@@ -1,0 +1,1 @@
+"""Numba on arrays: the wind triangle, clearance of legs, best-first search, interpolation."""

@@ -51,13 +51,12 @@ def _crossings(corners: FloatArray, ax: float, ay: float, bx: float, by: float, 
 @numba.njit(cache=True)
 def _beyond_box(box: FloatArray, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether a leg's box misses the polygon's box (west, south, east, north)."""
-    return max(ax, bx) < box[0] or min(ax, bx) > box[2] or max(ay, by) < box[1] or min(ay, by) > box[3]
+    west, south, east, north = box
+    return bool(max(ax, bx) < west or min(ax, bx) > east or max(ay, by) < south or min(ay, by) > north)
 
 
 @numba.njit(cache=True)
-def legs_through(
-    corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray
-) -> BoolArray:
+def legs_through(corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray) -> BoolArray:
     """Which legs (n, 3) have a part inside the prism: in plan inside the polygon and between floor and ceiling [m]."""
     n = starts.shape[0]
     hit = np.zeros(n, dtype=np.bool_)
@@ -85,9 +84,7 @@ def legs_through(
 
 
 @numba.njit(cache=True)
-def legs_leaving(
-    corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray
-) -> BoolArray:
+def legs_leaving(corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray) -> BoolArray:
     """Which legs (n, 3) have a part outside of the prism."""
     n = starts.shape[0]
     out = np.zeros(n, dtype=np.bool_)

@@ -14,7 +14,7 @@ import math
 import numba
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
 from gcs_windplan.kernels.triangle import PAPER, slowness, wind_angle
 
 DISTANCE, ANGLE, HYBRID, TIME = 0, 1, 2, 3
@@ -47,10 +47,11 @@ def edge_time(
     e, n, u = de / length, dn / length, dz / length
     first = slowness(performance, e, n, u, ae, an, au)
     last = slowness(performance, e, n, u, be, bn, bu)
-    if first == math.inf or last == math.inf:
+    if not (first < math.inf and last < math.inf):  # too strong, or NaN: not known that high
         return math.inf
     middle = slowness(performance, e, n, u, 0.5 * (ae + be), 0.5 * (an + bn), 0.5 * (au + bu))
-    return length * (first + 4.0 * middle + last) / 6.0
+    seconds: float = length * (first + 4.0 * middle + last) / 6.0
+    return seconds
 
 
 @numba.njit(cache=True)
@@ -61,25 +62,27 @@ def edge_cost(
     be: float, bn: float, bu: float,
 ) -> float:  # fmt: skip
     """The cost of an edge in the search; infinite where it cannot be flown. The angle is that at the arrival, (10)."""
-    seconds = edge_time(performance, de, dn, dz, ae, an, au, be, bn, bu)
+    seconds: float = edge_time(performance, de, dn, dz, ae, an, au, be, bn, bu)
     code = setting[CODE]
     if code == TIME or seconds == math.inf:
         return seconds
     if code == DISTANCE:
         return math.sqrt(de * de + dn * dn + dz * dz)
-    angle = wind_angle(de, dn, dz, be, bn, bu)
+    angle: float = wind_angle(de, dn, dz, be, bn, bu)
     if code == ANGLE:
         return angle
-    return setting[ANGLE_WEIGHT] * angle / math.pi
+    weight: float = setting[ANGLE_WEIGHT]
+    return weight * angle / math.pi
 
 
 @numba.njit(cache=True)
 def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, z: float) -> float:
     """The estimate from a place to the goal; for distance and time a consistent lower bound.
 
-    Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with airspeed
-    V + r in the constant wind c; times in a constant wind obey the triangle inequality. The paper's model does so only
-    for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball on 0.
+    Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with
+    airspeed V + r in the constant wind c; times in a constant wind obey the triangle inequality. The paper's model
+    does so only for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball
+    on 0.
     """
     de, dn, dz = setting[GOAL_E] - e, setting[GOAL_N] - n, setting[GOAL_Z] - z
     level2 = de * de + dn * dn
@@ -89,7 +92,8 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
         if code == DISTANCE:
             return distance
         if code == HYBRID:
-            return setting[DISTANCE_WEIGHT] * distance / max(distance, setting[STRAIGHT])
+            share: float = setting[DISTANCE_WEIGHT] * distance / max(distance, setting[STRAIGHT])
+            return share
         return 0.0
     vertical = 0.0
     if dz > 0.0:
@@ -111,7 +115,8 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
         speed = math.sqrt(rest) + along
     if speed <= 0.0:
         return math.inf
-    return max(vertical, level / speed)
+    seconds: float = max(vertical, level / speed)
+    return seconds
 
 
 @numba.njit(cache=True)
@@ -164,16 +169,16 @@ def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, I
 @numba.njit(cache=True)
 def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
-    heights: FloatArray, legal: IntArray, winds: FloatArray, estimates: FloatArray,
+    heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
     performance: FloatArray, setting: FloatArray,
     seeds: IntArray, seed_costs: FloatArray, targets: IntArray, target_costs: FloatArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a grid of layers, rows (to the north) and columns (to the east).
 
-    `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers, rows,
-    columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step k < m is
-    an edge; `winds` (nodes, 3) [m/s]; `estimates` (nodes,) in place of `remaining`, or empty. The search begins at
-    `seeds` with their costs and ends with the cheapest of `targets` plus its cost.
+    `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers,
+    rows, columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step
+    k < m is an edge; `winds` (nodes, 3) [m/s]; `estimates` (nodes,) in place of `remaining`, or empty. The search
+    begins at `seeds` with their costs and ends with the cheapest of `targets` plus its cost.
 
     Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
     every node reached (infinite elsewhere).
@@ -279,8 +284,8 @@ def search_csr(
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
 
-    `points` (nodes, 3) [m], `winds` (nodes, 3) [m/s], `estimates` (nodes,) in place of `remaining`, or empty. Returns as
-    `search_grid` does.
+    `points` (nodes, 3) [m], `winds` (nodes, 3) [m/s], `estimates` (nodes,) in place of `remaining`, or empty. Returns
+    as `search_grid` does.
     """
     n = points.shape[0]
     reached = np.full(n, math.inf)

@@ -118,9 +118,7 @@ def _extremes(
 
 
 @numba.njit(cache=True)
-def heights_at(
-    heights: FloatArray, coefficients: FloatArray, scaling: FloatArray, places: FloatArray
-) -> FloatArray:
+def heights_at(heights: FloatArray, coefficients: FloatArray, scaling: FloatArray, places: FloatArray) -> FloatArray:
     """The ground's height [m] at local places (n, 2 or more); NaN outside of the grid and in gaps."""
     result = np.empty(places.shape[0])
     for n in range(places.shape[0]):

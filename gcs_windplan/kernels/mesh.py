@@ -31,21 +31,13 @@ def _bin(grid: FloatArray, value: float, axis: int) -> int:
 
 
 @numba.njit(cache=True)
-def lay_bins(boxes: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """Plan bins for boxes (m, 4) of west, south, east, north: grid, heads, members; about one bin a box."""
-    count = boxes.shape[0]
-    west, south = boxes[:, 0].min(), boxes[:, 1].min()
-    width, height = boxes[:, 2].max() - west, boxes[:, 3].max() - south
-    usual = 0.0
-    for m in range(count):
-        usual += 0.5 * (boxes[m, 2] - boxes[m, 0] + boxes[m, 3] - boxes[m, 1]) / count
-    side = max(math.sqrt(width * height / count), usual, max(width, height) / 4096, 1e-6)
-    columns, rows = math.floor(width / side) + 1, math.floor(height / side) + 1
-    grid = np.array([west, south, side, float(columns), float(rows)])
-    heads = np.zeros(columns * rows + 1, dtype=np.int64)
+def fill_bins(boxes: FloatArray, grid: FloatArray) -> tuple[IntArray, IntArray]:
+    """Heads and members of plan bins for boxes (m, 4) of west, south, east, north."""
+    columns, bins = int(grid[3]), int(grid[3]) * int(grid[4])
+    heads = np.zeros(bins + 1, dtype=np.int64)
     members = np.empty(0, dtype=np.int64)
     for turn in range(2):  # first count, then fill from the back
-        for m in range(count - 1, -1, -1):
+        for m in range(boxes.shape[0] - 1, -1, -1):
             for j in range(_bin(grid, boxes[m, 1], 1), _bin(grid, boxes[m, 3], 1) + 1):
                 for i in range(_bin(grid, boxes[m, 0], 0), _bin(grid, boxes[m, 2], 0) + 1):
                     if turn == 0:
@@ -54,9 +46,10 @@ def lay_bins(boxes: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
                         heads[j * columns + i] -= 1
                         members[heads[j * columns + i]] = m
         if turn == 0:
-            heads = np.cumsum(heads)
-            members = np.empty(heads[-1], dtype=np.int64)
-    return grid, heads, members
+            for b in range(bins):
+                heads[b + 1] += heads[b]
+            members = np.empty(heads[bins], dtype=np.int64)
+    return heads, members
 
 
 @numba.njit(cache=True)
@@ -67,7 +60,8 @@ def _height(tri: FloatArray, x: float, y: float) -> float:
     area = ux * vy - uy * vx
     f, g = (px * vy - py * vx) / area, (ux * py - uy * px) / area
     z = a[2] + f * (b[2] - a[2]) + g * (c[2] - a[2])
-    return min(max(z, min(a[2], b[2], c[2])), max(a[2], b[2], c[2]))
+    height: float = min(max(z, min(a[2], b[2], c[2])), max(a[2], b[2], c[2]))
+    return height
 
 
 @numba.njit(cache=True)
@@ -221,25 +215,40 @@ def _peak(spans: FloatArray, first: int, last: int, a: float, b: float) -> float
 
 
 @numba.njit(cache=True)
+def _sort(spans: FloatArray, count: int) -> FloatArray:
+    """Put spans in order of where they begin; all their ends (2 count,), in order. Both are nearly sorted."""
+    for k in range(1, count):
+        t0, t1, h0, h1 = spans[k, 0], spans[k, 1], spans[k, 2], spans[k, 3]
+        j = k
+        while j > 0 and spans[j - 1, 0] > t0:
+            for i in range(4):
+                spans[j, i] = spans[j - 1, i]
+            j -= 1
+        spans[j, 0], spans[j, 1], spans[j, 2], spans[j, 3] = t0, t1, h0, h1
+    cuts = np.empty(2 * count)
+    for k in range(2 * count):
+        t = spans[k // 2, k % 2]
+        j = k
+        while j > 0 and cuts[j - 1] > t:
+            cuts[j] = cuts[j - 1]
+            j -= 1
+        cuts[j] = t
+    return cuts
+
+
+@numba.njit(cache=True)
 def _sweep(spans: FloatArray, count: int, length: float) -> tuple[float, float]:
     """The extreme heights of a leg over the highest surface, NaN if there are holes on the way."""
-    for k in range(1, count):  # by t0; few enough for an insertion sort
-        row = spans[k].copy()
-        j = k - 1
-        while j >= 0 and spans[j, 0] > row[0]:
-            spans[j + 1] = spans[j]
-            j -= 1
-        spans[j + 1] = row
+    cuts = _sort(spans, count)
     low, reach, hole = math.inf, 0.0, 0.0
     for k in range(count):
         hole = max(hole, spans[k, 0] - reach)
         reach = max(reach, spans[k, 1])
-        low = min(low, spans[k, 2], spans[k, 3])
+        low = min(low, min(spans[k, 2], spans[k, 3]))
     if max(hole, 1.0 - reach) * length > _HOLE:
         return math.nan, math.nan
-    cuts = np.sort(spans[:count, :2].copy().reshape(-1))
     high, first, last = low, 0, 0
-    for c in range(len(cuts) - 1):
+    for c in range(2 * count - 1):
         if cuts[c + 1] - cuts[c] < 1e-12:
             continue
         while first < count and spans[first, 1] <= cuts[c]:
@@ -267,12 +276,13 @@ def surface_leg_heights(
     """
     result = np.empty((starts.shape[0], 2))
     seen = np.full(triangles.shape[0], -1)
-    spans, span, leg = np.empty((64, 4)), np.empty(4), np.empty(6)
+    spans, leg = np.empty((64, 4)), np.empty(6)
     for n in range(starts.shape[0]):
-        leg[:3], leg[3:] = starts[n], ends[n]
+        for axis in range(3):
+            leg[axis], leg[3 + axis] = starts[n, axis], ends[n, axis]
         length = math.hypot(leg[3] - leg[0], leg[4] - leg[1])
         if not math.isfinite(length + leg[2] + leg[5]):
-            result[n] = math.nan
+            result[n, 0] = result[n, 1] = math.nan
             continue
         if length <= _RIM:
             top = _top(triangles, grid, heads, members, leg[0], leg[1])
@@ -290,19 +300,24 @@ def surface_leg_heights(
                         continue
                     seen[m] = n
                     if count + 3 > spans.shape[0]:
-                        spans = np.concatenate((spans, np.empty_like(spans)))
+                        spans = _doubled(spans)
                     turn = _turn(triangles[m])
                     if turn != 0.0:
-                        if _span(triangles[m], turn, leg, span):
-                            spans[count] = span
-                            count += 1
+                        count += _span(triangles[m], turn, leg, spans[count])
                         continue
                     for side in range(3):
-                        if _wall_span(triangles[m], side, leg, span):
-                            spans[count] = span
-                            count += 1
+                        count += _wall_span(triangles[m], side, leg, spans[count])
         result[n, 0], result[n, 1] = _sweep(spans, count, length)
     return result
+
+
+@numba.njit(cache=True)
+def _doubled(spans: FloatArray) -> FloatArray:
+    larger = np.empty((2 * spans.shape[0], 4))
+    for k in range(spans.shape[0]):
+        for i in range(4):
+            larger[k, i] = spans[k, i]
+    return larger
 
 
 @numba.njit(cache=True)
@@ -339,8 +354,11 @@ def sampled_collisions(
     """The paper's equations (5) to (8): is any point, `step` apart along a leg, in a triangle? Shape (n,)."""
     result = np.zeros(starts.shape[0], dtype=np.bool_)
     seen = np.full(triangles.shape[0], -1)
+    low, high = np.empty(3), np.empty(3)
     for n in range(starts.shape[0]):
-        low, high = np.minimum(starts[n], ends[n]), np.maximum(starts[n], ends[n])
+        for axis in range(3):
+            low[axis] = min(starts[n, axis], ends[n, axis])
+            high[axis] = max(starts[n, axis], ends[n, axis])
         for j in range(_bin(grid, low[1], 1), _bin(grid, high[1], 1) + 1):
             for i in range(_bin(grid, low[0], 0), _bin(grid, high[0], 0) + 1):
                 here = j * int(grid[3]) + i
@@ -365,9 +383,10 @@ def _boxes_meet(tri: FloatArray, low: FloatArray, high: FloatArray) -> bool:
 
 
 @numba.njit(cache=True)
-def _area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
-    u, v = b - a, c - a
-    x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+def _area(px: float, py: float, pz: float, a: FloatArray, b: FloatArray) -> float:
+    """The area of the triangle of a point and two corners [m²]."""
+    ux, uy, uz, vx, vy, vz = a[0] - px, a[1] - py, a[2] - pz, b[0] - px, b[1] - py, b[2] - pz
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     return 0.5 * math.sqrt(x * x + y * y + z * z)
 
 
@@ -375,122 +394,108 @@ def _area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
 def _meets_sampled(
     tri: FloatArray, start: FloatArray, end: FloatArray, step: float, tolerance: float
 ) -> bool:
-    area = _area(tri[0], tri[1], tri[2])
-    length = math.sqrt(((end - start) ** 2).sum())
+    a, b, c = tri[0], tri[1], tri[2]
+    dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    area = _area(a[0], a[1], a[2], b, c)
+    length = math.sqrt(dx * dx + dy * dy + dz * dz)
     for k in range(math.ceil(length / step) + 1):
-        p = start + (end - start) * (min(k * step / length, 1.0) if length > 0.0 else 0.0)
-        parts = _area(p, tri[0], tri[1]) + _area(p, tri[0], tri[2]) + _area(p, tri[1], tri[2])
+        t = min(k * step / length, 1.0) if length > 0.0 else 0.0
+        x, y, z = start[0] + t * dx, start[1] + t * dy, start[2] + t * dz
+        parts = _area(x, y, z, a, b) + _area(x, y, z, a, c) + _area(x, y, z, b, c)
         if parts - area <= tolerance * area:
             return True
     return False
 
 
-@numba.njit(cache=True)
-def _dot(a: FloatArray, b: FloatArray) -> float:
-    product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    return product
+# From here on vectors are single numbers: an array of three would cost an allocation each time.
 
 
 @numba.njit(cache=True)
-def _side_distance2(p: FloatArray, u: FloatArray, a: FloatArray, b: FloatArray) -> float:
-    """Squared distance of the segments p to p + u and a to b.
+def _side_distance2(start: FloatArray, end: FloatArray, a: FloatArray, b: FloatArray) -> float:
+    """Squared distance of a leg and the side from a to b.
 
     Ericson 2005, Real-Time Collision Detection, section 5.1.9.
     """
-    v, w = b - a, p - a
-    uu, vv, uv, uw, vw = _dot(u, u), _dot(v, v), _dot(u, v), _dot(u, w), _dot(v, w)
+    ux, uy, uz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    vx, vy, vz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    wx, wy, wz = start[0] - a[0], start[1] - a[1], start[2] - a[2]
+    uu, vv, uv = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, ux * vx + uy * vy + uz * vz
+    uw, vw = ux * wx + uy * wy + uz * wz, vx * wx + vy * wy + vz * wz
     s, det = 0.0, uu * vv - uv * uv
     if det > 1e-12 * uu * vv:
         s = min(max((uv * vw - uw * vv) / det, 0.0), 1.0)
-    t = (uv * s + vw) / vv if vv > 0.0 else 0.0
-    if t < 0.0 or t > 1.0 or vv == 0.0:
-        t = min(max(t, 0.0), 1.0)
-        s = min(max((uv * t - uw) / uu, 0.0), 1.0) if uu > 0.0 else 0.0
-    gap = w + s * u - t * v
-    return _dot(gap, gap)
+    t = min(max((uv * s + vw) / vv, 0.0), 1.0) if vv > 0.0 else 0.0
+    s = min(max((uv * t - uw) / uu, 0.0), 1.0) if uu > 0.0 else 0.0
+    x, y, z = wx + s * ux - t * vx, wy + s * uy - t * vy, wz + s * uz - t * vz
+    square: float = x * x + y * y + z * z
+    return square
 
 
 @numba.njit(cache=True)
-def _normal(tri: FloatArray) -> FloatArray:
-    u, v = tri[1] - tri[0], tri[2] - tri[0]
-    return np.array([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
+def _normal(tri: FloatArray) -> tuple[float, float, float]:
+    a, b, c = tri[0], tri[1], tri[2]
+    ux, uy, uz, vx, vy, vz = b[0] - a[0], b[1] - a[1], b[2] - a[2], c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
 @numba.njit(cache=True)
-def _above(tri: FloatArray, normal: FloatArray, p: FloatArray) -> bool:
-    """Does the foot of p on the triangle's plane lie inside of the triangle?"""
+def _foot_inside(tri: FloatArray, nx: float, ny: float, nz: float, x: float, y: float, z: float) -> bool:
+    """Does the foot of a point on the triangle's plane, with this normal, lie inside of the triangle?"""
     for k in range(3):
-        e, w = tri[(k + 1) % 3] - tri[k], p - tri[k]
-        x, y, z = e[1] * w[2] - e[2] * w[1], e[2] * w[0] - e[0] * w[2], e[0] * w[1] - e[1] * w[0]
-        if x * normal[0] + y * normal[1] + z * normal[2] < 0.0:
+        a, b = tri[k], tri[(k + 1) % 3]
+        ex, ey, ez, wx, wy, wz = b[0] - a[0], b[1] - a[1], b[2] - a[2], x - a[0], y - a[1], z - a[2]
+        if (ey * wz - ez * wy) * nx + (ez * wx - ex * wz) * ny + (ex * wy - ey * wx) * nz < 0.0:
             return False
     return True
 
 
 @numba.njit(cache=True)
-def _leg_triangle_distance(tri: FloatArray, start: FloatArray, end: FloatArray) -> float:
-    """The distance of a leg from a triangle [m], 0 where they meet.
+def _leg_triangle_distance(tri: FloatArray, p: FloatArray, q: FloatArray) -> float:
+    """The distance of a leg from p to q and a triangle [m], 0 where they meet.
 
     Either the leg pierces the triangle, or an end lies nearest to its inside, or the leg lies nearest to a
     side.
     """
-    u = end - start
-    least = math.inf
-    for k in range(3):
-        least = min(least, _side_distance2(start, u, tri[k], tri[(k + 1) % 3]))
-    normal = _normal(tri)
-    size2 = _dot(normal, normal)
+    least = min(_side_distance2(p, q, tri[0], tri[1]), _side_distance2(p, q, tri[1], tri[2]))
+    least = min(least, _side_distance2(p, q, tri[2], tri[0]))
+    a = tri[0]
+    nx, ny, nz = _normal(tri)
+    size2 = nx * nx + ny * ny + nz * nz
     if size2 > 0.0:
-        first, last = _dot(start - tri[0], normal), _dot(end - tri[0], normal)
-        if first * last <= 0.0 and first != last and _above(tri, normal, start + first / (first - last) * u):
-            return 0.0
-        if first * first < least * size2 and _above(tri, normal, start):
-            least = min(least, first * first / size2)
-        if last * last < least * size2 and _above(tri, normal, end):
-            least = min(least, last * last / size2)
+        first = (p[0] - a[0]) * nx + (p[1] - a[1]) * ny + (p[2] - a[2]) * nz
+        last = (q[0] - a[0]) * nx + (q[1] - a[1]) * ny + (q[2] - a[2]) * nz
+        if first * last <= 0.0 and first != last:
+            t = first / (first - last)
+            x, y, z = p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]), p[2] + t * (q[2] - p[2])
+            if _foot_inside(tri, nx, ny, nz, x, y, z):
+                return 0.0
+        if first * first < least * size2 and _foot_inside(tri, nx, ny, nz, p[0], p[1], p[2]):
+            least = first * first / size2
+        if last * last < least * size2 and _foot_inside(tri, nx, ny, nz, q[0], q[1], q[2]):
+            least = last * last / size2
     return math.sqrt(least)
 
 
 @numba.njit(cache=True)
-def lay_tree(boxes: FloatArray, margins: FloatArray, leaf: int) -> tuple[FloatArray, IntArray, IntArray]:
-    """A tree of boxes over boxes (m, 6) of low and high corners, halved along the longest side.
+def _least_possible(bounds: FloatArray, node: int, p: FloatArray, q: FloatArray) -> float:
+    """A lower bound of distance less margin between a leg from p to q and all that a node holds.
 
-    Returns bounds (k, 7): low, high, greatest margin; links (k, 2): the two children, or (-1 - first, count)
-    for a leaf; and the order (m,) to which `first` and `count` refer.
+    The greater of two: from the leg's box to the node's box, and from the leg to the ball around the node's
+    box.
     """
-    count = boxes.shape[0]
-    order = np.arange(count)
-    bounds, links = np.empty((2 * count, 7)), np.empty((2 * count, 2), dtype=np.int64)
-    todo = [(0, 0, count)]
-    nodes = 1
-    while len(todo) > 0:
-        node, first, last = todo.pop()
-        own = order[first:last]
-        for axis in range(3):
-            bounds[node, axis] = boxes[own, axis].min()
-            bounds[node, 3 + axis] = boxes[own, 3 + axis].max()
-        bounds[node, 6] = margins[own].max()
-        if last - first <= leaf:
-            links[node, 0], links[node, 1] = -1 - first, last - first
-            continue
-        axis = int(np.argmax(bounds[node, 3:6] - bounds[node, :3]))
-        order[first:last] = own[np.argsort(boxes[own, axis] + boxes[own, 3 + axis])]
-        middle = (first + last) // 2
-        links[node, 0], links[node, 1] = nodes, nodes + 1
-        todo.append((nodes, first, middle))
-        todo.append((nodes + 1, middle, last))
-        nodes += 2
-    return bounds[:nodes].copy(), links[:nodes].copy(), order
-
-
-@numba.njit(cache=True)
-def _least_possible(bounds: FloatArray, node: int, low: FloatArray, high: FloatArray) -> float:
-    """A lower bound of distance less margin between a leg's box and all that a node holds."""
-    square = 0.0
+    square, half2, along, length2, away2 = 0.0, 0.0, 0.0, 0.0, 0.0
     for axis in range(3):
-        gap = max(bounds[node, axis] - high[axis], low[axis] - bounds[node, 3 + axis], 0.0)
+        low, high = bounds[node, axis], bounds[node, 3 + axis]
+        gap = max(low - max(p[axis], q[axis]), min(p[axis], q[axis]) - high, 0.0)
+        w, u = 0.5 * (low + high) - p[axis], q[axis] - p[axis]
         square += gap * gap
-    return math.sqrt(square) - float(bounds[node, 6])
+        half2 += 0.25 * (high - low) * (high - low)
+        along += w * u
+        length2 += u * u
+        away2 += w * w
+    t = min(max(along / length2, 0.0), 1.0) if length2 > 0.0 else 0.0
+    centre2 = max(away2 - 2.0 * t * along + t * t * length2, 0.0)
+    return max(math.sqrt(square), math.sqrt(centre2) - math.sqrt(half2)) - float(bounds[node, 6])
 
 
 @numba.njit(cache=True)
@@ -549,20 +554,19 @@ def solid_leg_margins(
     stack = np.empty(256, dtype=np.int64)
     for n in range(starts.shape[0]):
         start, end = starts[n], ends[n]
-        if not math.isfinite((start + end).sum()):
+        if not math.isfinite(start[0] + start[1] + start[2] + end[0] + end[1] + end[2]):
             result[n] = math.nan
             continue
-        low, high = np.minimum(start, end), np.maximum(start, end)
         best = -TOUCH - _inside(triangles, owners, margins, grid, heads, members, start)
         stack[0], waiting = 0, 1
         while waiting > 0:
             waiting -= 1
             node = stack[waiting]
-            if _least_possible(bounds, node, low, high) >= best:
+            if _least_possible(bounds, node, start, end) >= best:
                 continue
             one, other = links[node]
             if one >= 0:
-                if _least_possible(bounds, one, low, high) < _least_possible(bounds, other, low, high):
+                if _least_possible(bounds, one, start, end) < _least_possible(bounds, other, start, end):
                     one, other = other, one
                 stack[waiting], stack[waiting + 1] = one, other
                 waiting += 2
@@ -597,11 +601,10 @@ def _disc_top(tri: FloatArray, turn: float, x: float, y: float, radius: float) -
             if t0 <= t1:
                 top = max(top, a[2] + t0 * (b[2] - a[2]), a[2] + t1 * (b[2] - a[2]))
     if turn != 0.0:
-        normal = _normal(tri)
-        uphill = -math.copysign(1.0, normal[2]) * normal
-        steep = math.hypot(uphill[0], uphill[1])
-        f = radius / steep if steep > 0.0 else 0.0
-        qx, qy = x + f * uphill[0], y + f * uphill[1]
+        nx, ny, nz = _normal(tri)
+        steep = math.hypot(nx, ny)
+        f = -math.copysign(radius / steep, nz) if steep > 0.0 else 0.0  # uphill is against an upward normal
+        qx, qy = x + f * nx, y + f * ny
         if _over(tri, turn, qx, qy):
             top = max(top, _height(tri, qx, qy))
     return top

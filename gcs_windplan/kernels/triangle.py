@@ -79,7 +79,8 @@ def slowness(
 def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float) -> float:
     """The angle between a direction and the wind [rad], 0..π: equation (10) with atan2 for the printed arctan.
 
-    In still air the angle has no meaning; π/2 is returned, since like a cross wind in (12) it neither helps nor hinders.
+    In still air the angle has no meaning; π/2 is returned, since like a cross wind in (12) it neither helps nor
+    hinders.
     """
     if wind_e == 0.0 and wind_n == 0.0 and wind_u == 0.0:
         return 0.5 * math.pi
@@ -96,9 +97,9 @@ def integrate_legs(
 ) -> FloatArray:
     """Integrals along n legs, shape (n, 4): time [s], ∫angle ds [rad m], mean wind along and across [m/s].
 
-    `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] .. first[i + 1] - 1, whose `weights` sum to 1
-    and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of no length takes no time. Across is positive
-    from left to right.
+    `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] .. first[i + 1] - 1, whose `weights` sum
+    to 1 and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of no length takes no time. Across is
+    positive from left to right. Time is infinite where the wind is too strong, or not known (NaN).
     """
     n = vectors.shape[0]
     result = np.zeros((n, 4))
@@ -111,6 +112,9 @@ def integrate_legs(
         level = math.hypot(e, u_n)
         for k in range(first[i], first[i + 1]):
             we, wn, wu = winds[k, 0], winds[k, 1], winds[k, 2]
+            if math.isnan(we):
+                result[i, 0] = math.inf
+                break
             share = weights[k]
             result[i, 0] += share * length * slowness(performance, e, u_n, u, we, wn, wu)
             result[i, 1] += share * length * wind_angle(e, u_n, u, we, wn, wu)
@@ -128,8 +132,6 @@ def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
     means = np.zeros(n)
     for i in range(n):
         for k in range(i * each, (i + 1) * each):
-            means[i] += wind_angle(
-                vectors[i, 0], vectors[i, 1], vectors[i, 2], winds[k, 0], winds[k, 1], winds[k, 2]
-            )
+            means[i] += wind_angle(vectors[i, 0], vectors[i, 1], vectors[i, 2], winds[k, 0], winds[k, 1], winds[k, 2])
         means[i] /= max(each, 1)
     return means

@@ -46,9 +46,7 @@ class RoutePoint:
         if not math.isfinite(self.altitude):
             raise InputError(f"the altitude {self.altitude} of the route point {self.point} is not finite")
         if self.ground_speed is not None and not 0.01 <= self.ground_speed < math.inf:
-            raise InputError(
-                f"the ground speed {self.ground_speed} m/s to {self.point} is not at least 0.01 m/s"
-            )
+            raise InputError(f"the ground speed {self.ground_speed} m/s to {self.point} is not at least 0.01 m/s")
 
 
 def route_mission(
@@ -132,9 +130,7 @@ def _legs(writer: _ItemWriter, route: Sequence[RoutePoint], speed_changes: bool)
             speed = _leg_speed(target, number)
             if abs(speed - commanded) >= _SPEED_STEP - 1e-9:
                 commanded = speed
-                yield writer.without_place(
-                    Command.DO_CHANGE_SPEED, (_GROUND_SPEED, speed, _SAME_THROTTLE, 0.0)
-                )
+                yield writer.without_place(Command.DO_CHANGE_SPEED, (_GROUND_SPEED, speed, _SAME_THROTTLE, 0.0))
         yield writer.waypoint(target)
 
 
@@ -149,9 +145,7 @@ def _ending(
 ) -> Iterator[MissionItem]:
     if finish == "land":
         if landing_altitude is None:
-            raise InputError(
-                "to land at the goal the height of the ground there is needed (landing_altitude)"
-            )
+            raise InputError("to land at the goal the height of the ground there is needed (landing_altitude)")
         yield writer.land(goal, landing_altitude)
     elif finish == "return":
         yield writer.without_place(Command.NAV_RETURN_TO_LAUNCH)

@@ -20,7 +20,7 @@ from gcs_windplan.review.png import png_bytes
 from gcs_windplan.terrain import Extent
 
 _PIXELS = 500  # of relief along the longer side
-_WIDTH = 7.4  # [inch] of the map itself
+_SIDE = 7.4  # [inch] the longer side of the map itself
 _ARROWS = 18  # along the longer side
 _LABEL_ROOM = 0.025  # of the route's extent, between two numbers
 _ROUTES = (
@@ -40,7 +40,8 @@ def draw_map(plans: Sequence[Plan], dpi: int = 130) -> bytes:
     plan = plans[0]
     extent = _frame_of(plans)
     depth = (extent.north - extent.south) / (extent.east - extent.west)
-    figure = Figure(figsize=(_WIDTH + 1.6, 1.5 + _WIDTH * depth), layout="constrained")
+    width = _SIDE / max(1.0, depth)
+    figure = Figure(figsize=(width + 1.6, 1.5 + width * depth), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     _draw_relief(axes, plan, extent)
@@ -109,9 +110,7 @@ def _draw_relief(axes: Any, plan: Plan, extent: Extent) -> None:
 def _draw_areas(axes: Any, plan: Plan) -> None:
     """Keep-out areas hatched, keep-in areas outlined, obstacles filled."""
     for prism in plan.request.airspace.keep_out:
-        patch = Polygon(
-            prism.corners / 1000, closed=True, fc=(0.8, 0.2, 0, 0.18), ec="#b22200", hatch="///", lw=1.2
-        )
+        patch = Polygon(prism.corners / 1000, closed=True, fc=(0.8, 0.2, 0, 0.18), ec="#b22200", hatch="///", lw=1.2)
         axes.add_patch(patch)
     if plan.request.obstacles is not None:
         seen_from_above = plan.request.obstacles.triangles[:, :, :2] / 1000
@@ -142,10 +141,9 @@ def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     )  # fmt: skip
     nice = float(f"{strongest:.1g}")
     label = f"{nice:g} m/s wind, {above:.0f} m above ground"
-    above_axes = 1 + 0.18 / (_WIDTH * (extent.north - extent.south) / (extent.east - extent.west))
-    axes.quiverkey(
-        arrows, 0.05, above_axes, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9}
-    )
+    depth = (extent.north - extent.south) / (extent.east - extent.west)
+    above_axes = 1 + 0.18 / (_SIDE * min(depth, 1.0))
+    axes.quiverkey(arrows, 0.05, above_axes, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9})
 
 
 def _draw_by_speed(axes: Any, plan: Plan) -> LineCollection:

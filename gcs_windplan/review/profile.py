@@ -55,9 +55,7 @@ def _draw_heights(axes: Any, plan: Plan, flown: FloatArray) -> None:
             ls="--",
             label=f"limit {request.max_height:g} m",
         )
-    axes.plot(
-        flown / 1000, corners[:, 2], color="#0072b2", lw=2, marker="o", ms=4, mfc="white", label="route"
-    )
+    axes.plot(flown / 1000, corners[:, 2], color="#0072b2", lw=2, marker="o", ms=4, mfc="white", label="route")
     top = float(np.nanmax(ground)) + (request.max_height or request.clearance)
     axes.set_ylim(floor, top + 0.14 * (top - floor))
     axes.set_ylabel(f"height [m], {request.terrain.vertical_datum}", fontsize=9)

@@ -17,7 +17,7 @@ from gcs_windplan.wind.field import WindField
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
 _MOST_EXPLAINED = 200_000  # reached nodes whose legs are judged again to explain a failure
-_CUT_BY_WIND = "wind (stronger than the vehicle can fly against)"
+_CUT_BY_WIND = "wind (too strong for the vehicle, or not known that high)"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +32,8 @@ class GraphPath:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WindyVeil:
-    """A veil with the wind at its nodes: `points` and `winds` (n, 3) [m], [m/s]; no wind where the ground is unknown."""
+    """A veil with the wind at its nodes: `points` and `winds` (n, 3) [m], [m/s]; no wind where the ground is
+    unknown."""
 
     veil: GridVeil | PrmVeil
     points: FloatArray
@@ -76,10 +77,7 @@ def _search_grid(
         cost.performance(), setting, seeds, seed_costs, targets, target_costs,
     )  # fmt: skip
     direct = math.inf
-    if (
-        np.linalg.norm(goal - start) <= _JOIN * veil.spacing
-        and not veil.clearance.breaches(ends[:1], ends[1:])[0]
-    ):
+    if np.linalg.norm(goal - start) <= _JOIN * veil.spacing and not veil.clearance.breaches(ends[:1], ends[1:])[0]:
         direct = edge_cost(cost.performance(), setting, *(goal - start), *air[0], *air[1])
     if direct <= total and math.isfinite(direct):
         return ends, direct, expanded, reached
@@ -125,9 +123,7 @@ def _search_prm(
     return veil.points[nodes], total, expanded, reached
 
 
-def no_route(
-    veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goal: FloatArray
-) -> NoRouteError:
+def no_route(veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goal: FloatArray) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)

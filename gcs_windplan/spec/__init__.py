@@ -1,6 +1,8 @@
-"""The mission file: what may stand in it, and the request that it makes."""
+"""The mission file: what may stand in it, and the request that it makes.
 
-from gcs_windplan.spec.build import read_mission
-from gcs_windplan.spec.parsing import MissionDocument, parse_mission, read_document
+The names are fetched when they are first asked for: a file's errors must not wait for what builds the request.
+"""
 
-__all__ = ["MissionDocument", "parse_mission", "read_document", "read_mission"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

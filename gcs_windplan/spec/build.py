@@ -15,7 +15,7 @@ from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.request import Export, Request, Roadmap, Site, Uniform
 from gcs_windplan.siting import choose_margin
-from gcs_windplan.spec.model import AreaModel, MissionModel
+from gcs_windplan.spec.model import AreaModel, GraphModel, MissionModel
 from gcs_windplan.spec.parsing import MissionDocument, read_document
 from gcs_windplan.spec.places import place_of
 from gcs_windplan.spec.terrain import build_obstacles, build_terrain
@@ -32,8 +32,8 @@ _SPARE = 500.0  # [m] of terrain read beyond the veil, so that sites just outsid
 def read_mission(path: Path | str) -> Request:
     """The request in a mission file, terrain and wind read.
 
-    Raises `MissionFileError` with every problem of the file, or the error of a terrain or wind that cannot be used, with
-    the line that names it.
+    Raises `MissionFileError` with every problem of the file, or the error of a terrain or wind that cannot be used,
+    with the line that names it.
     """
     document = read_document(Path(path))
     model = document.model
@@ -63,7 +63,7 @@ def read_mission(path: Path | str) -> Request:
         clearance=model.clearance,
         max_height=model.max_height,
         cost=CostChoice(**model.cost.model_dump()),
-        graph=Roadmap(**graph.prm.model_dump()) if graph.prm else Uniform(**graph.uniform.model_dump()),
+        graph=_graph(graph),
         layers=graph.layers or (),
         margin=graph.margin,
         obstacles=obstacles,
@@ -73,6 +73,14 @@ def read_mission(path: Path | str) -> Request:
         export=Export(**model.export.model_dump()),
         locate=_locator(document),
     )
+
+
+def _graph(model: GraphModel) -> Uniform | Roadmap:
+    """The kind of graph; the schema has seen to it that there is exactly one."""
+    if model.prm is not None:
+        return Roadmap(**model.prm.model_dump())
+    assert model.uniform is not None
+    return Uniform(**model.uniform.model_dump())
 
 
 def _locator(document: MissionDocument) -> Callable[[Problem], Problem]:
@@ -102,9 +110,7 @@ def _at(document: MissionDocument, field: str, problem: Problem) -> Problem:
     return document.problem(named, str(replace(problem, field=None)))
 
 
-def _collected(
-    document: MissionDocument, field: str, problems: list[Problem], build: Callable[[], _T]
-) -> _T | None:
+def _collected(document: MissionDocument, field: str, problems: list[Problem], build: Callable[[], _T]) -> _T | None:
     """What `build` returns; its input errors are added to the problems instead."""
     try:
         return _placed(document, field, build)

@@ -35,9 +35,7 @@ class VehicleModel(Section):
     """The vehicle and its autopilot."""
 
     type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
-    autopilot: Literal["ardupilot", "px4"] = Field(
-        default="ardupilot", description="firmware the mission is for"
-    )
+    autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="firmware the mission is for")
     airspeed: Airspeed = Field(description="cruise speed through the air", examples=["12 m/s"])
     climb: PositiveSpeed = Field(default=2.5, description="largest speed upwards")
     descent: PositiveSpeed = Field(default=1.5, description="largest speed downwards")
@@ -69,9 +67,7 @@ class CostModel(Section):
         weights = [name for name in ("distance", "angle") if name in fields]
         if fields.get("name") in ("distance", "angle", "time"):
             for weight in weights:
-                yield Finding(
-                    (weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True
-                )
+                yield Finding((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
         elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
             yield Finding(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
 
@@ -96,9 +92,7 @@ class UniformModel(Section):
 class PrmModel(Section):
     """A probabilistic road map: nodes at random places."""
 
-    nodes: NodeCount | None = Field(
-        default=None, description="how many; default: three quarters of a uniform grid's"
-    )
+    nodes: NodeCount | None = Field(default=None, description="how many; default: three quarters of a uniform grid's")
     seed: Seed = Field(default=1, description="the same seed gives the same nodes")
     radius: PositiveLength | None = Field(
         default=None, description="how far neighbours lie apart at most; default: chosen"
@@ -135,9 +129,7 @@ class GraphModel(Section):
 class PolygonModel(Section):
     """The corners of an area."""
 
-    expects: ClassVar[str] = (
-        "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
-    )
+    expects: ClassVar[str] = "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
 
     latitude_longitude: tuple[tuple[Latitude, Longitude], ...] | None = Field(
         default=None, min_length=3, description="at least 3 corners; a list alone is short for this"
@@ -174,13 +166,9 @@ class AreaModel(Section):
     """An area with, if wanted, a floor and a ceiling."""
 
     name: Label = Field(description="for messages and maps", examples=["school"])
-    polygon: PolygonModel = Field(
-        description="its corners", examples=["[[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]"]
-    )
+    polygon: PolygonModel = Field(description="its corners", examples=["[[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]"])
     floor: Length | None = Field(default=None, description="above mean sea level; default: the ground")
-    ceiling: Length | None = Field(
-        default=None, description="above mean sea level, above the floor; default: none"
-    )
+    ceiling: Length | None = Field(default=None, description="above mean sea level, above the floor; default: none")
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
@@ -212,25 +200,17 @@ class MissionModel(Section):
     terrain: TerrainModel = Field(
         description="the ground; exactly one of dem, sample, mesh, surface", examples=["{dem: tile.tif}"]
     )
-    obstacles: tuple[ObstacleModel, ...] = Field(
-        default=(), description="closed meshes that stand on the terrain"
-    )
-    wind: WindModel = Field(
-        description="exactly one of calm, constant, paper, netcdf", examples=["{calm: true}"]
-    )
+    obstacles: tuple[ObstacleModel, ...] = Field(default=(), description="closed meshes that stand on the terrain")
+    wind: WindModel = Field(description="exactly one of calm, constant, paper, netcdf", examples=["{calm: true}"])
     start: SiteModel = Field(description="where the route begins", examples=[_PLACE])
     goal: SiteModel = Field(description="where the route ends", examples=[_PLACE])
     via: tuple[SiteModel, ...] = Field(default=(), description="places to pass, in this order")
     clearance: PositiveLength = Field(
         default=DEFAULT_CLEARANCE, description="smallest vertical distance of any leg to the ground"
     )
-    max_height: PositiveLength | None = Field(
-        default=None, description="largest height above ground of any leg"
-    )
+    max_height: PositiveLength | None = Field(default=None, description="largest height above ground of any leg")
     cost: CostModel = Field(default=CostModel(name="time"), description="what the route is to be the best in")
-    graph: GraphModel = Field(
-        default=GraphModel(uniform=UniformModel()), description="the nodes that are searched"
-    )
+    graph: GraphModel = Field(default=GraphModel(uniform=UniformModel()), description="the nodes that are searched")
     keep_out: tuple[AreaModel, ...] = Field(default=(), description="areas no leg enters")
     keep_in: tuple[AreaModel, ...] = Field(default=(), description="areas no leg leaves")
     departure: UtcTime | None = Field(default=None, description="the time of take-off; kept in UTC")

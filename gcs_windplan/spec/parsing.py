@@ -63,9 +63,7 @@ def read_document(path: Path) -> MissionDocument:
     """The mission in a file; raises `MissionFileError`."""
     try:
         if path.stat().st_size > _LARGEST_FILE:
-            raise _whole_file(
-                path, f"is larger than {_LARGEST_FILE // 1_000_000} MB; this is not a mission file"
-            )
+            raise _whole_file(path, f"is larger than {_LARGEST_FILE // 1_000_000} MB; this is not a mission file")
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
         raise _whole_file(path, "there is no such file; check the name and the folder") from None
@@ -123,9 +121,7 @@ def _syntax_problem(error: yaml.MarkedYAMLError, text: str, file: Path) -> Probl
     line, column = _syntax_place(error, text)
     here = "".join(text.split("\n")[line - 1 : line])[column - 1 : column]
     said = " ".join(part for part in (error.context, error.problem, here) if part)
-    hint = next(
-        (hint for sign, hint in _HINTS if sign in said), "check the indentation, quotes and brackets here"
-    )
+    hint = next((hint for sign, hint in _HINTS if sign in said), "check the indentation, quotes and brackets here")
     return Problem(f"this is not YAML ({error.problem or error.context}); {hint}", None, file, line, column)
 
 

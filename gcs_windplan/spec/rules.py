@@ -56,9 +56,7 @@ def _layers_out_of_order(fields: Fields) -> Iterator[Finding]:
     layers = list(_layers(fields))
     for (_, below), (index, above) in pairwise(layers):
         if below is not None and above is not None and above <= below:
-            yield Finding(
-                ("graph", "layers", index), f"layers go upwards: {above:g} m is not above {below:g} m"
-            )
+            yield Finding(("graph", "layers", index), f"layers go upwards: {above:g} m is not above {below:g} m")
 
 
 def _sites_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
@@ -91,9 +89,7 @@ def _local_without_origin(fields: Fields) -> Iterator[Finding]:
         if "at" in obstacle:
             yield from _local_place(("obstacles", index, "at"), _section(obstacle, "at"), advice)
         else:
-            yield Finding(
-                ("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}"
-            )
+            yield Finding(("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}")
     for kind in ("keep_out", "keep_in"):
         for index, area in _entries(fields, kind):
             if "east_north" in _section(area, "polygon"):
@@ -117,9 +113,7 @@ def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
 
 def _same(here: tuple[str, float, float], there: tuple[str, float, float]) -> bool:
     tolerance = _SAME_METRES if here[0] == "local" else _SAME_DEGREES
-    return here[0] == there[0] and all(
-        abs(a - b) < tolerance for a, b in zip(here[1:], there[1:], strict=True)
-    )
+    return here[0] == there[0] and all(abs(a - b) < tolerance for a, b in zip(here[1:], there[1:], strict=True))
 
 
 def _position(site: Fields) -> tuple[str, float, float] | None:

@@ -128,9 +128,7 @@ def _follows(error: ErrorDetails, errors: list[ErrorDetails], section: type[Sect
 
 
 def _details(finding: Finding) -> InitErrorDetails:
-    kind = PydanticCustomError(
-        _AT_KEY if finding.at_key else _PLAIN, "{message}", {"message": finding.message}
-    )
+    kind = PydanticCustomError(_AT_KEY if finding.at_key else _PLAIN, "{message}", {"message": finding.message})
     return InitErrorDetails(type=kind, loc=finding.path, input=None)
 
 
@@ -165,11 +163,7 @@ def _missing(name: str, section: type[Section]) -> str:
 def _unknown(name: str, section: type[Section]) -> str:
     known = known_fields(section)
     close = suggestion(name, known)
-    return (
-        f"unknown field; did you mean '{close}'?"
-        if close
-        else f"unknown field; known fields: {', '.join(known)}"
-    )
+    return f"unknown field; did you mean '{close}'?" if close else f"unknown field; known fields: {', '.join(known)}"
 
 
 def _not_a_choice(value: object, expected: str) -> str:

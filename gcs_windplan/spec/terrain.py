@@ -55,9 +55,7 @@ def build_obstacles(document: MissionDocument, frame: LocalFrame, terrain: Terra
     return ground.Obstacles(built) if built else None
 
 
-def _obstacle(
-    document: MissionDocument, model: ObstacleModel, frame: LocalFrame, terrain: Terrain
-) -> Obstacle:
+def _obstacle(document: MissionDocument, model: ObstacleModel, frame: LocalFrame, terrain: Terrain) -> Obstacle:
     """One obstacle, moved to its place; it stands on the lowest ground under its lowest corners."""
     vertices, faces = ground.read_mesh(document.beside(model.mesh))
     east, north = (0.0, 0.0) if model.at is None else place_of(model.at, frame)

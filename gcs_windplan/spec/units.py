@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from gcs_windplan.constants import INTERNATIONAL_FOOT, KNOT, STATUTE_MILE
+from gcs_windplan.constants import INTERNATIONAL_FOOT, KNOT, NAUTICAL_MILE, STATUTE_MILE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +53,7 @@ LENGTH: Final = Quantity(
             "km": 1000.0,
             "ft": INTERNATIONAL_FOOT,
             "mi": STATUTE_MILE,
-            "nmi": float(round(KNOT * _HOUR)),  # a knot is one nautical mile, exactly 1852 m, an hour
+            "nmi": NAUTICAL_MILE,
         }
     ),
 )
@@ -112,9 +112,7 @@ def _read_text(text: str, quantity: Quantity) -> float:
 
 def _unit_problem(text: str, unit: str, wanted: Quantity) -> str:
     if _DECIMAL_COMMA.match(text):
-        return (
-            f"{shown(text)} has a decimal comma; write a point, as in {text.strip().replace(',', '.', 1)!r}"
-        )
+        return f"{shown(text)} has a decimal comma; write a point, as in {text.strip().replace(',', '.', 1)!r}"
     other = next((kind for kind in QUANTITIES if unit in kind.units), None)
     if not wanted.units:
         return f"{shown(text)} has a unit, but a plain number belongs here; {_advice(wanted)}"

@@ -53,9 +53,7 @@ class PlaceModel(Section):
         geographic = [name for name in ("latitude", "longitude") if name in fields]
         local = [name for name in ("east", "north") if name in fields]
         if geographic and local:
-            yield Finding(
-                (local[0],), "cannot stand beside latitude and longitude; keep one pair", at_key=True
-            )
+            yield Finding((local[0],), "cannot stand beside latitude and longitude; keep one pair", at_key=True)
         elif not geographic and not local:
             yield Finding((), "a place needs latitude and longitude, or east and north")
         else:
@@ -91,9 +89,7 @@ class HillModel(Section):
 
     east: Length = Field(description="of its top, from the local origin", examples=["0"])
     north: Length = Field(description="of its top, from the local origin", examples=["0"])
-    height: Length = Field(
-        description="of its top above the flat ground; negative for a hollow", examples=["60 m"]
-    )
+    height: Length = Field(description="of its top above the flat ground; negative for a hollow", examples=["60 m"])
     radius: PositiveLength = Field(
         description="standard deviation: there it is 61 % as high as at its top", examples=["90 m"]
     )
@@ -116,9 +112,7 @@ class SurfaceModel(Section):
             yield Finding(("cell",), f"a cell of {cell:g} m is larger than the surface of {size:g} m")
         elif size / cell > _MOST_CELLS:
             right = size / _MOST_CELLS
-            yield Finding(
-                ("cell",), f"more than {_MOST_CELLS} cells along a side; write at least {right:g} m"
-            )
+            yield Finding(("cell",), f"more than {_MOST_CELLS} cells along a side; write at least {right:g} m")
 
 
 class TerrainModel(Section):
@@ -174,12 +168,8 @@ class ObstacleModel(Section):
     """A closed mesh that stands on the terrain."""
 
     name: Label = Field(description="for messages and maps", examples=["tower"])
-    mesh: MeshName = Field(
-        description="a closed mesh in metres, z up; relative to this file", examples=["tower.glb"]
-    )
-    at: PlaceModel | None = Field(
-        default=None, description="where the mesh's origin is; default: the local origin"
-    )
+    mesh: MeshName = Field(description="a closed mesh in metres, z up; relative to this file", examples=["tower.glb"])
+    at: PlaceModel | None = Field(default=None, description="where the mesh's origin is; default: the local origin")
     altitude: Length | None = Field(
         default=None,
         description="above mean sea level, of the mesh's z = 0; default: it stands on the ground",
@@ -191,9 +181,7 @@ class ConstantWindModel(Section):
     """The same wind everywhere."""
 
     speed: Speed = Field(description="wind speed", examples=["8 m/s"])
-    from_: Direction = Field(
-        alias="from", description="the true direction the wind blows from", examples=["270 deg"]
-    )
+    from_: Direction = Field(alias="from", description="the true direction the wind blows from", examples=["270 deg"])
 
 
 class PaperWindModel(Section):
@@ -219,15 +207,11 @@ class ProfileModel(Section):
     """How the wind grows with height above ground."""
 
     law: Literal["power", "log"] = Field(description="the law of the profile", examples=["power"])
-    exponent: Exponent | None = Field(
-        default=None, description="of the power law, such as 0.143; required there"
-    )
+    exponent: Exponent | None = Field(default=None, description="of the power law, such as 0.143; required there")
     roughness: PositiveLength | None = Field(
         default=None, description="roughness length of the log law; required there"
     )
-    reference_height: PositiveLength = Field(
-        default=10.0, description="above ground, where the wind is as given"
-    )
+    reference_height: PositiveLength = Field(default=10.0, description="above ground, where the wind is as given")
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
@@ -256,9 +240,7 @@ class WindModel(Section):
     calm: Calm | None = Field(default=None, description="still air")
     constant: ConstantWindModel | None = Field(default=None, description="the same wind everywhere")
     paper: PaperWindModel | None = Field(default=None, description="an analytic field")
-    netcdf: FileName | None = Field(
-        default=None, description="a forecast or reanalysis; relative to this file"
-    )
+    netcdf: FileName | None = Field(default=None, description="a forecast or reanalysis; relative to this file")
     extend: Literal["nearest"] | None = Field(
         default=None, description="outside the file's area use the nearest values; only with `netcdf`"
     )

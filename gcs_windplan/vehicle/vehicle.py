@@ -32,9 +32,7 @@ class Vehicle:
         for field in ("airspeed", "climb", "descent"):
             value = getattr(self, field)
             if not (math.isfinite(value) and value > 0):
-                raise InputError(
-                    Problem(f"{value} m/s is no speed to fly at, give one above 0", f"vehicle.{field}")
-                )
+                raise InputError(Problem(f"{value} m/s is no speed to fly at, give one above 0", f"vehicle.{field}"))
 
     @property
     def hovers(self) -> bool:

@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
+from gcs_windplan.arrays import FlagArray, FloatArray, IntArray, MaskArray
 from gcs_windplan.errors import InputError
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil.clearance import Clearance
@@ -46,15 +46,16 @@ def grid_steps(neighbours: int, layered: bool) -> IntArray:
 class GridVeil:
     """Nodes in layers, rows (to the north) and columns (to the east).
 
-    `corner` east and north of the first node, `spacing` [m]; `heights` (layers, rows, columns) above mean sea level [m],
-    NaN over unknown ground; `steps` as from `grid_steps`; `legal` (nodes,) bit k set: the leg of step k is clear.
+    `corner` east and north of the first node, `spacing` [m]; `heights` (layers, rows, columns) above mean sea level
+    [m], NaN over unknown ground; `steps` as from `grid_steps`; `legal` (nodes,) bit k set: the leg of step k is
+    clear.
     """
 
     corner: FloatArray
     spacing: float
     heights: FloatArray
     steps: IntArray
-    legal: IntArray
+    legal: MaskArray
     clearance: Clearance
 
     @property
@@ -90,7 +91,8 @@ class GridVeil:
         r, c = np.meshgrid(rs, cs, indexing="ij")
         close = np.hypot(r - row, c - column) <= reach
         sheet = (r * columns + c)[close]
-        return (np.arange(layers)[:, None] * (rows * columns) + sheet[None, :]).ravel()
+        nodes: IntArray = (np.arange(layers)[:, None] * (rows * columns) + sheet[None, :]).ravel()
+        return nodes
 
 
 def lay_grid(

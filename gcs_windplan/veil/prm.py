@@ -1,4 +1,5 @@
-"""The probabilistic roadmap: random nodes at veil height, joined to all within a radius (Kavraki 1996; the paper's (4))."""
+"""The probabilistic roadmap: random nodes at veil height, joined to all within a radius (Kavraki 1996; the paper's
+(4))."""
 
 from __future__ import annotations
 
@@ -45,8 +46,8 @@ class PrmVeil:
 def roadmap_radius(nodes: int, area: Extent) -> float:
     """A radius [m] that joins each of `nodes` random places to about 3 ln n others.
 
-    A random geometric graph becomes connected at ln n of them (Penrose 1997, doi:10.1214/aoap/1034625335); three times as
-    many leave room for the legs that are not clear.
+    A random geometric graph becomes connected at ln n of them (Penrose 1997, doi:10.1214/aoap/1034625335); three
+    times as many leave room for the legs that are not clear.
     """
     surface = (area.east - area.west) * (area.north - area.south)
     return math.sqrt(3.0 * surface / math.pi * math.log(max(nodes, 2)) / nodes)
@@ -67,9 +68,7 @@ def lay_prm(
     """
     from scipy.spatial import cKDTree  # half a second of import, for roadmaps only
 
-    places = np.random.default_rng(seed).uniform(
-        (area.west, area.south), (area.east, area.north), size=(nodes, 2)
-    )
+    places = np.random.default_rng(seed).uniform((area.west, area.south), (area.east, area.north), size=(nodes, 2))
     sheets = [clearance.lifted(places, layer) for layer in layers]
     points = np.concatenate([sites, *sheets])
     points = points[np.isfinite(points).all(axis=1)]

@@ -120,9 +120,7 @@ class Jet:
     def __post_init__(self) -> None:
         _check(self.speed, self.scale)
         if self.reading not in get_args(JetReading):
-            raise WindError(
-                f"the jet can be read as {', '.join(get_args(JetReading))}, not as {self.reading!r}"
-            )
+            raise WindError(f"the jet can be read as {', '.join(get_args(JetReading))}, not as {self.reading!r}")
 
     @property
     def name(self) -> str:
@@ -219,7 +217,5 @@ def _unit_field(east: FloatArray, north: FloatArray, speed: float) -> FloatArray
     """Vectors of length |speed| along (east, north); still where both vanish."""
     length = np.hypot(east, north)
     singular: BoolArray = length == 0
-    safe = np.where(
-        singular, 1.0, length
-    )  # divided by before the speed comes in: no overflow next to the origin
+    safe = np.where(singular, 1.0, length)  # divided by before the speed comes in: no overflow next to the origin
     return _field(east / safe * speed, north / safe * speed)

@@ -28,5 +28,6 @@ class WindField(Protocol):
     def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3): east, north, height above mean sea level [m].
 
-        `seconds` count from the departure. Raises `WindError` outside of the field's area, heights or times.
+        `seconds` count from the departure. NaN above the heights for which the field is known: no leg goes there.
+        Raises `WindError` outside of the field's area or times.
         """

@@ -74,7 +74,10 @@ class GriddedWind:
         return float(min(np.min(south_north, initial=math.inf), np.min(west_east, initial=math.inf)) / 2)
 
     def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
-        """The wind (n, 3) [m/s] at points (n, 3), `seconds` after departure; the upward component is 0."""
+        """The wind (n, 3) [m/s] at points (n, 3), `seconds` after departure; the upward component is 0.
+
+        NaN above the highest level. Raises `WindError` outside of the area or time.
+        """
         self._check_time(seconds)
         if not np.isfinite(points).all():
             raise WindError("the wind is asked for at a place that is not finite")
@@ -86,8 +89,9 @@ class GriddedWind:
             self.u, self.v, self.heights, self.times, self.latitudes, self.longitudes,
             places, np.ascontiguousarray(z, dtype=np.float64), np.full(len(points), float(seconds)),
         )  # fmt: skip
-        self._check_top(places, points, result[:, 2])
+        unknown = result[:, 2] > _TOP  # above the highest level
         result[:, 2] = 0.0
+        result[unknown] = np.nan
         return to_grid(result, places[:, 2])
 
     @property
@@ -121,17 +125,6 @@ class GriddedWind:
             "say `extend: nearest` to take the wind at its edge"
         )
 
-    def _check_top(self, places: FloatArray, points: FloatArray, excess: FloatArray) -> None:
-        if not len(excess) or excess.max() <= _TOP:
-            return
-        worst = int(np.argmax(excess))
-        latitude, longitude = places[worst, :2]
-        raise WindError(
-            f"the wind's highest level lies {excess[worst]:.0f} m below the height of {points[worst, 2]:.0f} "
-            f"m above mean sea level at {latitude:.5f}, {longitude:.5f} ({self.name}): fly lower, or take a "
-            "file with higher levels"
-        )
-
 
 def misses(places: FloatArray, latitudes: FloatArray, longitudes: FloatArray) -> FloatArray:
     """How far places (n, 2 or more) [deg] lie outside of a grid with ascending axes [m], shape (n,)."""
@@ -159,9 +152,7 @@ def _filled(name: str, values: FloatArray, shape: tuple[int, ...]) -> FloatArray
     if array.shape == shape[1:2]:
         array = np.broadcast_to(array[np.newaxis, :, np.newaxis, np.newaxis], shape)
     if array.shape != shape:
-        raise WindError(
-            f"the wind's {name} have the shape {array.shape}, not {shape} (time, level, lat, lon)"
-        )
+        raise WindError(f"the wind's {name} have the shape {array.shape}, not {shape} (time, level, lat, lon)")
     if not np.isfinite(array).all():
         raise WindError(f"the wind's {name} are not finite everywhere")
     return np.ascontiguousarray(array)

@@ -52,9 +52,7 @@ def read_netcdf(
     is read.
     """
     if departure is not None and departure.tzinfo is None:
-        raise WindError(
-            f"the departure {departure:%Y-%m-%d %H:%M} has no time zone: write it in UTC, ending in Z"
-        )
+        raise WindError(f"the departure {departure:%Y-%m-%d %H:%M} has no time zone: write it in UTC, ending in Z")
     path = Path(path)
     with _opened(path) as dataset:
         return _Reader(dataset).wind(path.name, frame, ground, departure, area, extend)
@@ -191,9 +189,7 @@ class _Reader:
 
         Reads the smallest block that holds them, which is far faster than to let the library pick one by one.
         """
-        index = tuple(
-            slice(places[d].min(), places[d].max() + 1) if d in places else 0 for d in variable.dimensions
-        )
+        index = tuple(slice(places[d].min(), places[d].max() + 1) if d in places else 0 for d in variable.dimensions)
         block = _plain(self.dataset.variables[variable.name][index])
         present = [d for d in variable.dimensions if d in places]
         block = block.transpose([present.index(d) for d in places])
@@ -224,9 +220,7 @@ def _check_complete(name: str, values: FloatArray, axes: list[tuple[cf.AxisKind,
     missing = np.argwhere(~np.isfinite(values))
     if not len(missing):
         return
-    place = ", ".join(
-        selection.say(kind, axis[index]) for (kind, axis), index in zip(axes, missing[0], strict=True)
-    )
+    place = ", ".join(selection.say(kind, axis[index]) for (kind, axis), index in zip(axes, missing[0], strict=True))
     count = f"{len(missing)} of {values.size} values"
     raise WindError(f"{name} misses {count}, the first at {place}: fill them or cut them off")
 

@@ -138,9 +138,7 @@ def choose_times(times: FloatArray, departure: datetime | None) -> Times:
     if len(times) == 1:
         return _steady(times, start)
     if start is None:
-        raise WindError(
-            f"it holds {len(times)} times, {say_time(times[0])} to {say_time(times[-1])}: give `departure`"
-        )
+        raise WindError(f"it holds {len(times)} times, {say_time(times[0])} to {say_time(times[-1])}: give `departure`")
     outside = max(times[0] - start, start - times[-1])
     if outside > 0:
         raise WindError(

@@ -77,9 +77,7 @@ def terrain() -> tuple[FloatArray, float, float, float, float]:
     with cbook.get_sample_data("jacksboro_fault_dem.npz") as dem:
         heights = np.asarray(dem["elevation"], dtype=np.float64)[::-1]
         half_x, half_y = float(dem["dx"]) / 2, float(dem["dy"]) / 2
-        edge_south, edge_north = sorted(
-            (float(dem["ymin"]), float(dem["ymax"]))
-        )  # its ymin is the northern one
+        edge_south, edge_north = sorted((float(dem["ymin"]), float(dem["ymax"])))  # its ymin is the northern one
         edge_west, edge_east = float(dem["xmin"]), float(dem["xmax"])
     return heights, edge_south + half_y, edge_north - half_y, edge_west + half_x, edge_east - half_x
 
@@ -99,18 +97,12 @@ def relief(heights: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     return stand, axis, np.clip(-stand, 0, 1)
 
 
-def _level(
-    z: float, stand: FloatArray, axis: FloatArray, valley: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _level(z: float, stand: FloatArray, axis: FloatArray, valley: FloatArray) -> tuple[FloatArray, FloatArray]:
     """u and v [m/s] at one height above the ground."""
     grip = np.exp(-z / FADING)
     speed = SPEED * (z / REFERENCE) ** SHEAR * (1 + 0.6 * grip * stand)
-    towards = np.radians(
-        270.0 - FROM_DEG - VEER_PER_METRE * (min(z, 200.0) - REFERENCE)
-    )  # from east, anticlockwise
-    off = (
-        axis - towards + np.pi / 2
-    ) % np.pi - np.pi / 2  # the valley's nearer end, at most a right angle away
+    towards = np.radians(270.0 - FROM_DEG - VEER_PER_METRE * (min(z, 200.0) - REFERENCE))  # from east, anticlockwise
+    off = (axis - towards + np.pi / 2) % np.pi - np.pi / 2  # the valley's nearer end, at most a right angle away
     turned = towards + grip * valley * off * np.cos(off)  # across a valley the flow does not choose an end
     return speed * np.cos(turned), speed * np.sin(turned)
 
@@ -130,9 +122,7 @@ def write(path: Path, latitudes: FloatArray, longitudes: FloatArray, u: FloatArr
         _coordinate(file, "longitude", longitudes, "degrees_east", "longitude")
         for name, values, standard in (("u", u, "eastward_wind"), ("v", v, "northward_wind")):
             dimensions = ("time", "height", "latitude", "longitude")
-            variable = file.createVariable(
-                name, "i2", dimensions, compression="zlib", complevel=9, shuffle=True
-            )
+            variable = file.createVariable(name, "i2", dimensions, compression="zlib", complevel=9, shuffle=True)
             variable.standard_name, variable.units, variable.scale_factor = standard, "m s-1", 0.01
             variable[:] = values[np.newaxis]
 

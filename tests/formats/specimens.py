@@ -51,9 +51,7 @@ _longitudes = st.floats(-180, 180)
 _altitudes = st.floats(-1000, 60000)
 _params = st.one_of(st.floats(-1e6, 1e6, width=32), st.just(math.nan), st.integers(-1000, 1000).map(float))
 _frames = st.sampled_from([*Frame, 4, 99])
-_commands = st.one_of(
-    st.sampled_from(list(Command)).filter(lambda c: c != Command.DO_JUMP), st.integers(0, 65535)
-)
+_commands = st.one_of(st.sampled_from(list(Command)).filter(lambda c: c != Command.DO_JUMP), st.integers(0, 65535))
 
 homes = st.builds(
     Home,
@@ -101,6 +99,4 @@ def altitudes(mission: Mission) -> list[float]:
 
 def home_content(home: Home | None) -> tuple[int, int] | None:
     """What a file keeps of home exactly: its coordinates in 1e-7 degrees."""
-    return (
-        None if home is None else (degrees_e7(home.point.latitude_deg), degrees_e7(home.point.longitude_deg))
-    )
+    return None if home is None else (degrees_e7(home.point.latitude_deg), degrees_e7(home.point.longitude_deg))

@@ -133,9 +133,7 @@ def test_what_was_read_can_be_written_and_read_again(path: Path) -> None:
 def test_a_survey_is_read_through_the_items_it_carries() -> None:
     read = read_plan(MISSIONS / "mavsdk" / "qgroundcontrol_sample_with_survey.plan")
     assert len(read.mission.items) == 13
-    assert read.repairs == (
-        "mission.items[1] (survey, version 5) was replaced by the simple items it carries",
-    )
+    assert read.repairs == ("mission.items[1] (survey, version 5) was replaced by the simple items it carries",)
 
 
 def test_the_fence_of_a_plan_is_said_to_be_left_out() -> None:

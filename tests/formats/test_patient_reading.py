@@ -171,11 +171,7 @@ def test_a_spoiled_sheet_is_read_or_refused(place: int, char: str) -> None:
 
 
 json_values = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.integers()
-    | st.floats(allow_nan=False, allow_infinity=False)
-    | st.text(max_size=3),
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=3),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
     max_leaves=5,
 )
@@ -187,14 +183,8 @@ PLACES = [
     ("geoFence", "circles"),
     ("mission",),
     ("mission", "items"),
-    *[
-        ("mission", key)
-        for key in ("firmwareType", "vehicleType", "cruiseSpeed", "plannedHomePosition", "version")
-    ],
-    *[
-        ("mission", "items", 0, key)
-        for key in ("type", "command", "frame", "params", "autoContinue", "doJumpId")
-    ],
+    *[("mission", key) for key in ("firmwareType", "vehicleType", "cruiseSpeed", "plannedHomePosition", "version")],
+    *[("mission", "items", 0, key) for key in ("type", "command", "frame", "params", "autoContinue", "doJumpId")],
     ("mission", "items", 0, "params", 4),
     ("mission", "plannedHomePosition", 2),
 ]

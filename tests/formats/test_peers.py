@@ -25,9 +25,7 @@ one_millimetre = 1e-3  # [m]
 ODD = Mission(
     (
         MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_TAKEOFF, (15.5, 0, 0, 0), 0, 0, 30.0),
-        MissionItem(
-            Frame.GLOBAL_TERRAIN_ALT, Command.NAV_SPLINE_WAYPOINT, (2.25, 0, 0, 0), -46.8, -9.8, 50.0
-        ),
+        MissionItem(Frame.GLOBAL_TERRAIN_ALT, Command.NAV_SPLINE_WAYPOINT, (2.25, 0, 0, 0), -46.8, -9.8, 50.0),
         MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_WAYPOINT, (0, 0, 0, 0), 90, -180, -12.5, False),
         MissionItem(Frame.GLOBAL, Command.NAV_DELAY, (-1, 12, 30, 0)),
     ),
@@ -49,9 +47,7 @@ every_mission = pytest.mark.parametrize("mission", MISSIONS.values(), ids=MISSIO
 
 
 @every_mission
-def test_mavwp_reads_waypoints(
-    mission: Mission, mavwp_load: Callable[[Path], list[Any]], tmp_path: Path
-) -> None:
+def test_mavwp_reads_waypoints(mission: Mission, mavwp_load: Callable[[Path], list[Any]], tmp_path: Path) -> None:
     path = tmp_path / "mission.waypoints"
     write_waypoints(mission, path)
     theirs = mavwp_load(path)
@@ -96,9 +92,7 @@ def test_mavsdk_imports_plan_without_home(mission: Mission, mission_raw: Any, tm
     assert imported.geofence_items == imported.rally_items == []
 
 
-def test_nan_reaches_every_peer(
-    mavwp_load: Callable[[Path], list[Any]], mission_raw: Any, tmp_path: Path
-) -> None:
+def test_nan_reaches_every_peer(mavwp_load: Callable[[Path], list[Any]], mission_raw: Any, tmp_path: Path) -> None:
     mission = BUILT["px4-relative-land-speeds"]
     path = tmp_path / "mission.waypoints"
     write_waypoints(mission, path)

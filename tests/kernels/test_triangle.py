@@ -19,9 +19,7 @@ from gcs_windplan.wind import ConstantWind, Diverging, Jet, Rotation
 from tests.oracles.flying import naive_angle, naive_edge_time, naive_slowness
 
 speeds = st.floats(-15, 15)
-directions = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-0.5, 0.5)).filter(
-    lambda d: math.hypot(*d) > 0.1
-)
+directions = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-0.5, 0.5)).filter(lambda d: math.hypot(*d) > 0.1)
 vehicles = st.builds(
     Vehicle,
     airspeed=st.floats(2, 20),

@@ -65,7 +65,5 @@ def test_importing_missions_and_formats_leaves_the_process_alone_and_is_light() 
         "assert not {'numba', 'scipy', 'pymavlink.mavutil', 'matplotlib'} & set(sys.modules), 'heavy'"
     )
     environment = {key: value for key, value in os.environ.items() if not key.startswith("MAVLINK")}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

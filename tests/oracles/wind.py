@@ -27,9 +27,7 @@ def naive_interpolate_columns(
             at_height = np.empty((nt, ny, nx))
             for t, y, x in np.ndindex(nt, ny, nx):
                 at_height[t, y, x] = np.interp(height, heights[t, :, y, x], values[t, :, y, x])
-            at_longitude = np.array(
-                [[np.interp(longitude, longitudes, line) for line in plane] for plane in at_height]
-            )
+            at_longitude = np.array([[np.interp(longitude, longitudes, line) for line in plane] for plane in at_height])
             at_latitude = np.array([np.interp(latitude, latitudes, line) for line in at_longitude])
             row.append(float(np.interp(time, times, at_latitude)))
         rows.append(row)

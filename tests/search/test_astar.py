@@ -36,9 +36,7 @@ def _dijkstra(points, winds, legs, choice, vehicle, start: int, goal: int) -> fl
     legs = np.unique(legs, axis=0)  # a sparse matrix would add up legs that stand twice
     costs = [_edge(choice, vehicle, points[j] - points[i], winds[i], winds[j]) for i, j in legs]
     keep = np.isfinite(costs)
-    graph = coo_matrix(
-        (np.array(costs)[keep], (legs[keep, 0], legs[keep, 1])), shape=(len(points), len(points))
-    )
+    graph = coo_matrix((np.array(costs)[keep], (legs[keep, 0], legs[keep, 1])), shape=(len(points), len(points)))
     return float(dijkstra(graph.tocsr(), indices=start)[goal])
 
 
@@ -77,9 +75,7 @@ def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
     found = find_path(windy, cost, start, goal)
     # the sites may join nodes two spacings away, so the path may be better than the grid's own, never worse
     assert found.cost <= expected * (1 + EXACT)
-    legs = np.concatenate(
-        [_grid_legs(veil), _site_legs(veil, start, 0), _site_legs(veil, goal, veil.size - 1)]
-    )
+    legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, 0), _site_legs(veil, goal, veil.size - 1)])
     joined = _dijkstra(points, windy.winds, legs, cost.choice, vehicle, 0, veil.size - 1)
     assert found.cost == pytest.approx(joined, rel=EXACT)
 

@@ -29,9 +29,7 @@ def test_a_wrong_field(field: str, value: str, line: str) -> None:
 
 
 def test_an_absent_field() -> None:
-    assert complaints(mission(name=None)) == [
-        "1:1: name: is missing; add it, for example 'name: ridge-crossing'"
-    ]
+    assert complaints(mission(name=None)) == ["1:1: name: is missing; add it, for example 'name: ridge-crossing'"]
 
 
 PARSERS_WORDS = r"(?<=this is not YAML) \(.*?\)(?=; )"
@@ -136,9 +134,7 @@ def test_a_problem_holds_its_place_as_data() -> None:
 
 
 def test_layers_and_sites_above_the_largest_height() -> None:
-    text = mission(
-        start="{latitude: 1, longitude: 2, height: 130}", max_height="120", graph="{layers: [90, 400 ft]}"
-    )
+    text = mission(start="{latitude: 1, longitude: 2, height: 130}", max_height="120", graph="{layers: [90, 400 ft]}")
     assert complaints(text) == [
         "5:44: start.height: 130 m is above max_height, 120 m",
         "8:22: graph.layers.1: 121.92 m is above max_height, 120 m",

@@ -147,9 +147,7 @@ def test_a_round_trip_may_end_where_it_started() -> None:
 
 
 def test_aliases_repeat_a_value() -> None:
-    model = read(
-        start="&home {latitude: 36.5, longitude: -84.3}", via="[{latitude: 36, longitude: -84}, *home]"
-    ).model
+    model = read(start="&home {latitude: 36.5, longitude: -84.3}", via="[{latitude: 36, longitude: -84}, *home]").model
     assert model.via[1] == model.start
 
 

@@ -71,7 +71,8 @@ def _box(width: float, height: float) -> tuple[np.ndarray, np.ndarray]:
     import trimesh
 
     box = trimesh.creation.box((width, width, height))
-    return np.array(box.vertices) + (0, 0, height / 2), np.array(box.faces, dtype=np.int64)
+    box.apply_translation((0, 0, height / 2))
+    return np.array(box.vertices), np.array(box.faces, dtype=np.int64)
 
 
 def test_nodes_inside_an_obstacle_are_lifted_above_it():

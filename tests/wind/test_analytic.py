@@ -47,9 +47,7 @@ def test_a_true_west_wind_follows_the_parallel_east_of_the_origin() -> None:
     expected = 10 * along / np.linalg.norm(along)
     wind = ConstantWind.from_direction(10.0, 270.0, TROMSO).at(places)
     np.testing.assert_allclose(wind[:, :2], expected, atol=ONE_MM_PER_SECOND)
-    assert wind[0, 1] == pytest.approx(
-        10 * math.sin(math.radians(0.96)), abs=0.01
-    )  # 50 km · tan 65° / 6390 km
+    assert wind[0, 1] == pytest.approx(10 * math.sin(math.radians(0.96)), abs=0.01)  # 50 km · tan 65° / 6390 km
 
 
 def test_a_true_wind_at_the_origin_is_not_turned() -> None:

@@ -34,9 +34,7 @@ def test_places_beyond_the_chart_and_near_a_pole_are_computed_exactly(latitude: 
 def test_true_winds_turn_back_by_the_convergence() -> None:
     wind = np.array([[0.0, 10.0, 0.0]])
     np.testing.assert_allclose(to_grid(wind, np.array([0.1])), rotate(wind, -0.1))
-    assert (
-        to_grid(wind, np.array([0.1]))[0, 0] < 0
-    )  # grid north clockwise of true north: true north lies left of it
+    assert to_grid(wind, np.array([0.1]))[0, 0] < 0  # grid north clockwise of true north: true north lies left of it
 
 
 def test_a_chart_without_area_is_refused() -> None:

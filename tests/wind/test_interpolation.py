@@ -53,9 +53,7 @@ def test_it_equals_its_naive_twin_where_heights_vary(seed: int, shape: tuple[int
     places, z = random.uniform(-2, 6, (20, 2)), random.uniform(-20, 200, 20)
     when = random.uniform(-2, 6, 20)
     found = interpolate_columns(*grid, places, z, when)
-    np.testing.assert_allclose(
-        found[:, :2], naive_interpolate_columns(*grid, places, z, when), atol=1e-12, rtol=1e-9
-    )
+    np.testing.assert_allclose(found[:, :2], naive_interpolate_columns(*grid, places, z, when), atol=1e-12, rtol=1e-9)
 
 
 def test_it_tells_how_far_a_point_lies_above_the_top() -> None:

@@ -32,9 +32,7 @@ def test_the_log_law_by_hand() -> None:
 def test_heights_count_from_the_ground_below_each_point() -> None:
     wind = ProfileWind(ConstantWind(10.0, -4.0), _slope, LogLaw(10.0, 0.1))
     points = np.array([[0.0, 0.0, 100.0], [500.0, 0.0, 150.0], [500.0, 0.0, 60.0], [500.0, 0.0, 20.0]])
-    np.testing.assert_allclose(
-        wind.at(points), [[15, -6, 0], [15, -6, 0], [10, -4, 0], [0, 0, 0]], atol=1e-12
-    )
+    np.testing.assert_allclose(wind.at(points), [[15, -6, 0], [15, -6, 0], [10, -4, 0], [0, 0, 0]], atol=1e-12)
 
 
 def test_unknown_ground_is_refused_and_located() -> None:
@@ -55,9 +53,7 @@ def test_the_resolution_is_the_finer_of_field_and_ground() -> None:
     exponent=st.floats(0.01, 0.5),
     roughness=st.floats(0.001, 5),
 )
-def test_the_wind_never_weakens_with_height(
-    low: float, rise: float, exponent: float, roughness: float
-) -> None:
+def test_the_wind_never_weakens_with_height(low: float, rise: float, exponent: float, roughness: float) -> None:
     for law in (PowerLaw(10.0, exponent), LogLaw(10.0, roughness)):
         lower, upper = law.factor(np.array([low, low + rise]))
         assert 0 <= lower <= upper

@@ -86,9 +86,7 @@ def write_trap(
     return path
 
 
-def _axis(
-    file: netCDF4.Dataset, name: str, values: Sequence[float] | FloatArray, attributes: dict[str, str]
-) -> None:
+def _axis(file: netCDF4.Dataset, name: str, values: Sequence[float] | FloatArray, attributes: dict[str, str]) -> None:
     file.createDimension(name, len(values))
     variable = file.createVariable(name, "f8", (name,))
     variable.setncatts(attributes)

@@ -1,0 +1,28 @@
+"""What all tests share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared" / "data"
+
+settings.register_profile("no clock", deadline=None)  # kernels compile in the first example
+settings.load_profile("no clock")
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """Real terrain, forecasts, missions and flights, kept outside of the repository."""
+    if not SHARED.is_dir():
+        pytest.skip("the shared data are not beside this checkout")
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def gallery() -> Path:
+    """The missions of the repository."""
+    return ROOT / "missions"
