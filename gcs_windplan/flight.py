@@ -107,8 +107,9 @@ def _refuse_unflyable(parts: LegIntegrals) -> None:
         i = int(stopped[0])
         raise NoRouteError(
             f"leg {i + 1} cannot be flown: the wind along it is {parts.along[i]:.1f} m/s along and"
-            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places. Use a finer graph or more
-            airspeed.", {"wind": len(stopped)},
+            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places or not known that high. Use a"
+            " finer graph, more airspeed, or a max_height below the wind's highest level.",
+            {"wind": len(stopped)},
         )
 
 

@@ -100,9 +100,9 @@ def legs_leaving(corners: FloatArray, floor: float, ceiling: float, starts: Floa
         for k in range(count + 1):
             after = cuts[k] if k < count else 1.0
             middle = 0.5 * (before + after)
-            if after - before > 1e-12 or count == 0:
-                if not inside(corners, ax + middle * (bx - ax), ay + middle * (by - ay)):
-                    out[i] = True
-                    break
+            counts = after - before > 1e-12 or count == 0
+            if counts and not inside(corners, ax + middle * (bx - ax), ay + middle * (by - ay)):
+                out[i] = True
+                break
             before = after
     return out
