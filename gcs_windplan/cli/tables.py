@@ -70,7 +70,7 @@ def _ends(plan: Plan) -> str:
 def print_comparison(plans: Sequence[Plan]) -> None:
     """Several plans of one request, a row each."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
-    table.add_column("least", justify="left")
+    table.add_column("least", justify="left", no_wrap=True)
     for name in ("time min", "against best", "length km", "energy Wh", "waypoints", "climb m", "AGL m",
                  "expanded", "search s"):  # fmt: skip
         table.add_column(name, justify="right")
@@ -78,8 +78,12 @@ def print_comparison(plans: Sequence[Plan]) -> None:
     for plan in plans:
         totals, effort = plan.totals, plan.effort
         table.add_row(
-            str(plan.choice), clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %",
+            plan.choice.name, clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %",
             f"{totals.length / 1000:.2f}", "not known", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
             f"{totals.clearance:.0f} - {totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
         )  # fmt: skip
-    _console().print(table)
+    console = _console()
+    console.print(table)
+    hybrid = next((plan.choice for plan in plans if plan.choice.name == "hybrid"), None)
+    if hybrid is not None:
+        console.print(f"hybrid weighs distance {hybrid.distance:g} and angle {hybrid.angle:g}", soft_wrap=True)

@@ -14,7 +14,7 @@ from gcs_windplan.cost import LegCost
 from gcs_windplan.veil import Clearance
 
 _MOST_LEGS = 8_000  # judged in one pass; the window narrows on long paths, and passes repeat
-_TOLL = 1e-3  # what a waypoint more must gain, as a share of the path's cost
+_TOLL = 2e-4  # what a waypoint more must gain, as a share of the path's cost
 
 
 def shorten(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
