@@ -71,7 +71,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
     """Several plans of one request, a row each."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("least", justify="left", no_wrap=True)
-    for name in ("time min", "against best", "length km", "energy Wh", "waypoints", "climb m", "AGL m",
+    for name in ("time min", "against best", "length km", "energy Wh", "points", "climb m", "AGL m",
                  "expanded", "search s"):  # fmt: skip
         table.add_column(name, justify="right")
     best = min(plan.totals.seconds for plan in plans)

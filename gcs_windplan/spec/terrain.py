@@ -29,7 +29,7 @@ def build_terrain(document: MissionDocument, frame: LocalFrame, area: Extent) ->
         return ground.read_dem(paths, frame, area, nodata=model.nodata, vertical_datum=datum)
     if model.mesh is not None:
         vertices, faces = ground.read_mesh(document.beside(model.mesh))
-        return ground.MeshTerrain(vertices + (0.0, 0.0, altitude), faces, model.mesh, datum or "local")
+        return ground.MeshTerrain(vertices + np.array([0.0, 0.0, altitude]), faces, model.mesh, datum or "local")
     if model.surface is not None:
         return _analytic(model.surface, altitude, datum or "local")
     return ground.sample_dem(frame, area)
@@ -59,7 +59,7 @@ def _obstacle(document: MissionDocument, model: ObstacleModel, frame: LocalFrame
     """One obstacle, moved to its place; it stands on the lowest ground under its lowest corners."""
     vertices, faces = ground.read_mesh(document.beside(model.mesh))
     east, north = (0.0, 0.0) if model.at is None else place_of(model.at, frame)
-    placed = vertices + (east, north, 0.0)
+    placed = vertices + np.array([east, north, 0.0])
     if model.altitude is not None:
         base = model.altitude
     else:
@@ -67,4 +67,4 @@ def _obstacle(document: MissionDocument, model: ObstacleModel, frame: LocalFrame
         base = float(np.min(terrain.heights_at(feet))) - float(vertices[:, 2].min())
         if not np.isfinite(base):
             raise TerrainError(f"{model.name}: it stands where the terrain is not known; give its altitude")
-    return ground.Obstacle(model.name, placed + (0.0, 0.0, base), faces, model.margin)
+    return ground.Obstacle(model.name, placed + np.array([0.0, 0.0, base]), faces, model.margin)

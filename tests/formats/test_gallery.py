@@ -1,0 +1,115 @@
+"""Every mission of the gallery: it plans, keeps its limits, and its files are read alike by everyone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gcs_windplan as gw
+from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
+from gcs_windplan.mission import Command, Mission
+from gcs_windplan.planner import Plan
+
+MISSIONS = sorted((Path(__file__).resolve().parents[2] / "missions").glob("*.yaml"))
+one_millimetre = 1e-3
+
+
+@cache
+def planned(path: Path) -> Plan:
+    return gw.plan_route(gw.read_mission(path))
+
+
+@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+class TestGallery:
+    def test_says_what_it_shows(self, path: Path):
+        head = path.read_text().splitlines()
+        assert sum(line.startswith("#") for line in head) >= 2
+        assert "synthetic" in path.read_text()
+
+    def test_keeps_its_limits(self, path: Path):
+        plan = planned(path)
+        request = plan.request
+        points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
+        share = np.linspace(0, 1, 2000)[:, None]
+        for a, b in pairwise(points):
+            along = a + share * (b - a)
+            above = along[:, 2] - request.terrain.heights_at(along)
+            assert above.min() >= request.clearance - one_millimetre
+            assert above.max() <= (request.max_height or math.inf) + one_millimetre
+        assert not request.airspace.breaches(points[:-1], points[1:]).any()
+        if request.obstacles is not None:
+            assert (request.obstacles.leg_margins(points[:-1], points[1:]) >= -one_millimetre).all()
+        assert plan.cost <= plan.graph_cost * (1 + 1e-12)
+
+    def test_speeds_follow_the_plan(self, path: Path):
+        """Each leg is flown at the ground speed last commanded before it, or within 0.1 m/s of it."""
+        plan = planned(path)
+        commanded, flown = None, []
+        for item in gw.mission_of(plan).items:
+            if item.command == Command.DO_CHANGE_SPEED:
+                assert item.params[0] == 1  # SPEED_TYPE_GROUNDSPEED
+                commanded = item.params[1]
+            elif item.command == Command.NAV_WAYPOINT:
+                flown.append(commanded)
+        legs = [leg.ground_speed for leg in plan.legs]
+        assert len(flown) == len(legs)
+        assert max(abs(a - b) for a, b in zip(flown, legs, strict=True)) <= 0.11
+
+    def test_altitudes_and_places_are_the_plans(self, path: Path):
+        plan = planned(path)
+        mission = gw.mission_of(plan)
+        assert mission.home is not None
+        route = [item for item in mission.items if item.command == Command.NAV_WAYPOINT]
+        for item, waypoint in zip(route, plan.waypoints[1:], strict=True):
+            assert item.lat_e7 == round(waypoint.point.latitude_deg * 1e7)
+            assert item.lon_e7 == round(waypoint.point.longitude_deg * 1e7)
+            assert item.altitude + mission.home.altitude == pytest.approx(waypoint.altitude, abs=one_millimetre)
+        home = np.array([[plan.waypoints[0].east, plan.waypoints[0].north]])
+        assert mission.home.altitude == pytest.approx(float(plan.request.terrain.heights_at(home)[0]))
+
+    def test_files_are_read_alike_by_everyone(
+        self, path: Path, tmp_path: Path, mavwp_load: Callable[[Path], list[Any]], mission_raw: Any
+    ):
+        mission = gw.mission_of(planned(path))
+        sheet, plan = tmp_path / "m.waypoints", tmp_path / "m.plan"
+        write_waypoints(mission, sheet)
+        write_plan(mission, plan)
+        ours = [_row(item) for item in mission.items]
+        for read in (read_waypoints(sheet), read_plan(plan)):
+            assert read.repairs == ()
+            assert _agree(ours, [_row(item) for item in read.mission.items])
+        assert _agree(ours, [_their_row(w.command, w.frame, w, w.x, w.y, w.z) for w in mavwp_load(sheet)[1:]])
+        by_planner = mission_raw.import_mission_planner_mission(str(sheet)).mission_items[1:]
+        by_ground_control = mission_raw.import_qgroundcontrol_mission(str(plan)).mission_items
+        for theirs in (by_planner, by_ground_control):
+            assert _agree(ours, [_their_row(w.command, w.frame, w, w.x / 1e7, w.y / 1e7, w.z) for w in theirs])
+
+
+def _row(item) -> tuple[float, ...]:
+    return (item.command, item.frame, *item.params, item.lat_e7, item.lon_e7, item.altitude)
+
+
+def _their_row(command, frame, item, latitude, longitude, altitude) -> tuple[float, ...]:
+    places = round(latitude * 1e7), round(longitude * 1e7)
+    return (command, frame, item.param1, item.param2, item.param3, item.param4, *places, altitude)
+
+
+def _agree(ours: list[tuple[float, ...]], theirs: list[tuple[float, ...]]) -> bool:
+    """Equal command, frame and 1e7 integers; parameters and altitudes as far as float32 keeps them; NaN equals NaN."""
+    return len(ours) == len(theirs) and all(
+        np.array_equal(a[:2], b[:2]) and a[6:8] == b[6:8] and np.allclose(a[2:], b[2:], atol=1e-3, equal_nan=True)
+        for a, b in zip(ours, theirs, strict=True)
+    )
+
+
+def test_the_gallery_is_whole():
+    names = {path.stem for path in MISSIONS}
+    assert names >= {"paper_case1", "paper_case2", "paper_case3", "jacksboro", "village", "keep_out", "inspection"}
+    assert isinstance(gw.mission_of(planned(MISSIONS[0])), Mission)

@@ -1,0 +1,59 @@
+"""What the README prints is what the program does."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import gcs_windplan as gw
+from gcs_windplan.cli.tables import summary_lines
+from gcs_windplan.cost import COST_NAMES, CostChoice
+from gcs_windplan.errors import MissionFileError
+from gcs_windplan.spec import parse_mission
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text()
+
+
+def test_the_mission_shown_is_the_mission_shipped():
+    shown = re.search(r"```yaml\n(.*?)\n```", README, re.DOTALL)
+    assert shown is not None
+    assert shown[1] == (ROOT / "missions" / "jacksboro.yaml").read_text().rstrip()
+
+
+def test_the_figures_shown_are_the_programs():
+    request = gw.read_mission(ROOT / "missions" / "jacksboro.yaml")
+    plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES])
+    by_time = plans[-1]
+    assert f"# {by_time!r}" in README
+    for line in summary_lines(by_time)[:2]:
+        assert line in README
+    for plan in plans:
+        minutes, seconds = divmod(round(plan.totals.seconds), 60)
+        assert re.search(rf"^ {plan.choice.name} +{minutes}:{seconds:02d} ", README, re.MULTILINE), plan
+
+
+def test_the_errors_shown_are_the_programs():
+    shown = re.findall(r"^error: (broken\.yaml:.*)$", README, re.MULTILINE)
+    broken = (ROOT / "missions" / "jacksboro.yaml").read_text()
+    for good, bad in (
+        ("airspeed: 14 m/s", "airspeed: 14 m"),
+        ("goal: {latitude", "goal: {lattitude"),
+        ("max_height: 120 m", "max_height: 30 m"),
+    ):
+        assert good in broken
+        broken = broken.replace(good, bad)
+    try:
+        parse_mission(broken, Path("broken.yaml"))
+    except MissionFileError as error:
+        assert [str(problem) for problem in error.problems] == shown  # noqa: PT017
+    else:
+        raise AssertionError("the broken mission passed")
+
+
+def test_the_two_commands_stand_in_the_first_shell_block():
+    block = re.search(r"```sh\n(.*?)\n```", README, re.DOTALL)
+    assert block is not None
+    first, second = block[1].splitlines()
+    assert first.endswith("gcs-windplan plan missions/jacksboro.yaml")
+    assert second.endswith("-m pytest")
