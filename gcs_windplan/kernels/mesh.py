@@ -92,9 +92,7 @@ def _over(tri: FloatArray, turn: float, x: float, y: float) -> bool:
 
 
 @numba.njit(cache=True)
-def _top(
-    triangles: FloatArray, grid: FloatArray, heads: IntArray, members: IntArray, x: float, y: float
-) -> float:
+def _top(triangles: FloatArray, grid: FloatArray, heads: IntArray, members: IntArray, x: float, y: float) -> float:
     """The highest surface at a place, NaN where there is none."""
     top = -math.inf
     here = _bin(grid, y, 1) * int(grid[3]) + _bin(grid, x, 0)
@@ -391,9 +389,7 @@ def _area(px: float, py: float, pz: float, a: FloatArray, b: FloatArray) -> floa
 
 
 @numba.njit(cache=True)
-def _meets_sampled(
-    tri: FloatArray, start: FloatArray, end: FloatArray, step: float, tolerance: float
-) -> bool:
+def _meets_sampled(tri: FloatArray, start: FloatArray, end: FloatArray, step: float, tolerance: float) -> bool:
     a, b, c = tri[0], tri[1], tri[2]
     dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     area = _area(a[0], a[1], a[2], b, c)

@@ -49,6 +49,6 @@ class Terrain(Protocol):
     def leg_heights(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """The smallest and the largest height of straight legs over the ground, exact, shape (n, 2) [m].
 
-        `starts` and `ends` are (n, 3): east, north, height above mean sea level. NaN where any part of the leg lies over
-        unknown ground. Negative where the leg runs below the ground.
+        `starts` and `ends` are (n, 3): east, north, height above mean sea level. NaN where any part of the
+        leg lies over unknown ground. Negative where the leg runs below the ground.
         """

@@ -1,0 +1,17 @@
+from .analytic import Hill as Hill
+from .analytic import flat as flat
+from .analytic import hills as hills
+from .dem import Dem as Dem
+from .gridmap import GeographicGrid as GeographicGrid
+from .gridmap import Georeference as Georeference
+from .gridmap import GridMap as GridMap
+from .mesh import MeshTerrain as MeshTerrain
+from .meshfile import read_mesh as read_mesh
+from .obstacles import Obstacle as Obstacle
+from .obstacles import Obstacles as Obstacles
+from .raster import read_dem as read_dem
+from .sample import SAMPLE_CENTRE as SAMPLE_CENTRE
+from .sample import sample_dem as sample_dem
+from .sampled import sampled_collisions as sampled_collisions
+from .surface import Extent as Extent
+from .surface import Terrain as Terrain
