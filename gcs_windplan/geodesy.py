@@ -2,7 +2,8 @@
 
 The local frame is the azimuthal equidistant projection of WGS 84 about its origin: east and north in metres, distances
 and bearings *from the origin* true. Between two other points at most 50 km from the origin a distance is off by less
-than 0.5 m in 100 km. The third coordinate is height above mean sea level, as in the terrain; it takes no part here.
+than 0.5 m, a short one by at most 1 part in 100 000. The third coordinate is height above mean sea level, as in the
+terrain; it takes no part here.
 
 True north and grid north differ away from the origin by the convergence: 1° at 65° latitude, 50 km east.
 """

@@ -15,7 +15,7 @@ import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
-from gcs_windplan.kernels.triangle import PAPER, slowness, wind_angle
+from gcs_windplan.kernels.triangle import PAPER, leg_seconds, wind_angle
 
 DISTANCE, ANGLE, HYBRID, TIME = 0, 1, 2, 3
 
@@ -34,47 +34,47 @@ SETTINGS = 12
 
 
 @numba.njit(cache=True)
-def edge_time(
-    performance: FloatArray,
-    de: float, dn: float, dz: float,
+def edge_cost(
+    performance: FloatArray, setting: FloatArray,
+    level: float, east: float, north: float, climb: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
 ) -> float:  # fmt: skip
-    """Seconds along an edge (de, dn, dz) [m] whose wind goes linearly from a to b [m/s]; Simpson's rule."""
-    length = math.sqrt(de * de + dn * dn + dz * dz)
-    if length == 0.0:
-        return 0.0
-    e, n, u = de / length, dn / length, dz / length
-    total = 0.0
-    for i in range(3):  # one call in a loop compiles in a third of the time of three calls
-        share = 0.5 * i
-        here = slowness(performance, e, n, u, ae + share * (be - ae), an + share * (bn - an), au + share * (bu - au))
-        if not here < math.inf:  # too strong, or NaN: not known that high
-            return math.inf
-        total += here if i != 1 else 4.0 * here
-    seconds: float = length * total / 6.0
-    return seconds
+    """The cost of an edge in the search; infinite where it cannot be flown.
+
+    The edge goes `level` [m] along the unit track (east, north) and gains `climb` [m] in a wind from a to b [m/s]. Its
+    time is the mean of the times in both winds (the trapezoidal rule). The angle is that at the arrival, (10).
+    """
+    outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
+    if outset == math.inf:
+        return outset
+    seconds: float = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
+    code = setting[CODE]
+    if code == TIME or seconds == math.inf:
+        return seconds
+    if code == DISTANCE:
+        return math.sqrt(level * level + climb * climb)
+    angle: float = wind_angle(level * east, level * north, climb, be, bn, bu)
+    if code == ANGLE:
+        return angle
+    weight: float = setting[ANGLE_WEIGHT]
+    return weight * angle / math.pi
 
 
 @numba.njit(cache=True)
-def edge_cost(
+def edge_between(
     performance: FloatArray, setting: FloatArray,
     de: float, dn: float, dz: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
 ) -> float:  # fmt: skip
-    """The cost of an edge in the search; infinite where it cannot be flown. The angle is that at the arrival, (10)."""
-    seconds: float = edge_time(performance, de, dn, dz, ae, an, au, be, bn, bu)
-    code = setting[CODE]
-    if code == TIME or seconds == math.inf:
-        return seconds
-    if code == DISTANCE:
-        return math.sqrt(de * de + dn * dn + dz * dz)
-    angle: float = wind_angle(de, dn, dz, be, bn, bu)
-    if code == ANGLE:
-        return angle
-    weight: float = setting[ANGLE_WEIGHT]
-    return weight * angle / math.pi
+    """`edge_cost` of an edge given by its vector (de, dn, dz) [m]."""
+    level = math.sqrt(de * de + dn * dn)
+    if level == 0.0:
+        if dz == 0.0:
+            return 0.0
+        return edge_cost(performance, setting, 0.0, 0.0, 0.0, dz, ae, an, au, be, bn, bu)
+    return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
 
 
 @numba.njit(cache=True)
@@ -123,10 +123,10 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
 
 @numba.njit(cache=True)
 def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
-    """Put a node into the heap of `size` entries; there must be room for one more."""
+    """Put a node into the 4-ary heap of `size` entries; there must be room for one more."""
     hole = size
     while hole > 0:
-        above = (hole - 1) >> 1
+        above = (hole - 1) >> 2
         if keys[above] <= key:
             break
         keys[hole] = keys[above]
@@ -142,16 +142,19 @@ def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     last = size - 1
     key, node = keys[last], nodes[last]
     hole = 0
-    below = 1
-    while below < last:
-        if below + 1 < last and keys[below + 1] < keys[below]:
-            below += 1
-        if keys[below] >= key:
+    while True:
+        child = 4 * hole + 1
+        if child >= last:
             break
-        keys[hole] = keys[below]
-        nodes[hole] = nodes[below]
-        hole = below
-        below = 2 * hole + 1
+        least, least_key = child, keys[child]
+        for other in range(child + 1, min(child + 4, last)):
+            if keys[other] < least_key:
+                least, least_key = other, keys[other]
+        if least_key >= key:
+            break
+        keys[hole] = least_key
+        nodes[hole] = nodes[least]
+        hole = least
     keys[hole] = key
     nodes[hole] = node
 
@@ -186,9 +189,17 @@ def search_grid(
     Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
     every node reached (infinite elsewhere).
     """
-    layers, rows, columns = shape
+    layers, rows, columns = shape[0], shape[1], shape[2]
     half = steps.shape[0] // 2
     n = heights.size
+    jumps = np.empty(2 * half, dtype=np.int64)
+    tracks = np.zeros((2 * half, 3))  # level length, unit track east and north
+    for k in range(2 * half):
+        up, north, east = steps[k, 0], steps[k, 1], steps[k, 2]
+        jumps[k] = (up * rows + north) * columns + east
+        cells = math.sqrt(north * north + east * east)
+        if cells > 0.0:
+            tracks[k, 0], tracks[k, 1], tracks[k, 2] = cells * spacing, east / cells, north / cells
     reached = np.empty(n)
     came_by = np.empty(n, dtype=np.int8)
     for node in range(n):
@@ -239,17 +250,18 @@ def search_grid(
         keys, nodes = _room(keys, nodes, size + 2 * half)
         for k in range(2 * half):
             to_layer, to_row, to_column = layer + steps[k, 0], row + steps[k, 1], column + steps[k, 2]
-            if not (0 <= to_layer < layers and 0 <= to_row < rows and 0 <= to_column < columns):
+            if to_layer < 0 or to_layer >= layers or to_row < 0 or to_row >= rows:
                 continue
-            to = (to_layer * rows + to_row) * columns + to_column
+            if to_column < 0 or to_column >= columns:
+                continue
+            to = node + jumps[k]
             if closed[to] & 1:
                 continue
             mask = legal[node] >> k if k < half else legal[to] >> (k - half)
             if mask & 1 == 0:
                 continue
             cost = reached[node] + edge_cost(
-                performance, setting,
-                steps[k, 2] * spacing, steps[k, 1] * spacing, heights[to] - heights[node],
+                performance, setting, tracks[k, 0], tracks[k, 1], tracks[k, 2], heights[to] - heights[node],
                 ae, an, au, winds[to, 0], winds[to, 1], winds[to, 2],
             )  # fmt: skip
             if cost < reached[to]:
@@ -272,14 +284,14 @@ def search_grid(
     while node >= 0:
         count += 1
         k = came_by[node]
-        node = -1 if k < 0 else node - ((steps[k, 0] * rows + steps[k, 1]) * columns + steps[k, 2])
+        node = -1 if k < 0 else node - jumps[k]
     path = np.empty(count, dtype=np.int64)
     node = arrival
     for i in range(count):
         path[count - 1 - i] = node
         k = came_by[node]
         if k >= 0:
-            node -= (steps[k, 0] * rows + steps[k, 1]) * columns + steps[k, 2]
+            node -= jumps[k]
     return path, best, expanded, reached
 
 
@@ -320,7 +332,7 @@ def search_csr(
             to = neighbours[k]
             if closed[to]:
                 continue
-            cost = reached[node] + edge_cost(
+            cost = reached[node] + edge_between(
                 performance, setting,
                 points[to, 0] - points[node, 0], points[to, 1] - points[node, 1], points[to, 2] - points[node, 2],
                 winds[node, 0], winds[node, 1], winds[node, 2], winds[to, 0], winds[to, 1], winds[to, 2],

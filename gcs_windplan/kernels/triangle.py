@@ -34,43 +34,41 @@ def ground_speed(model: float, airspeed: float, along: float, cross: float) -> f
 
 
 @numba.njit(cache=True)
-def slowness(
-    performance: FloatArray, east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float
-) -> float:
-    """Seconds per metre along a unit direction (east, north, up); infinite where it cannot be flown.
+def leg_seconds(
+    performance: FloatArray,
+    level: float, east: float, north: float, climb: float,
+    wind_e: float, wind_n: float, wind_u: float,
+) -> float:  # fmt: skip
+    """Seconds for a leg in one wind; infinite where it cannot be flown or the wind is not known (NaN).
 
-    The slower of two: the horizontal part at the ground speed, the vertical part at the climb or descent rate in air
-    that itself rises or sinks. A vehicle that hovers slows down for a steep leg, as far as a tail wind lets it.
+    The leg goes `level` [m] along the level unit track (east, north) and gains `climb` [m]. It takes the longer of two
+    times: the level way at the ground speed, the climb at the climb or descent rate in air that itself rises or
+    sinks. A vehicle that hovers slows down for a steep leg, as far as a tail wind lets it.
     """
-    model, airspeed, climb, descent, hovers = performance
-    if wind_u < -climb or wind_u > descent:  # it cannot even hold its height
-        return math.inf
+    airspeed = performance[1]
+    upward = performance[2] + wind_u
+    downward = performance[3] - wind_u
     vertical = 0.0
-    if up > 0.0:
-        rate = climb + wind_u
-        if rate <= 0.0:
-            return math.inf
-        vertical = up / rate
-    elif up < 0.0:
-        rate = descent - wind_u
-        if rate <= 0.0:
-            return math.inf
-        vertical = -up / rate
-    level = math.hypot(east, north)
-    if level < 1e-9:
+    if climb > 0.0:
+        vertical = climb / upward if upward > 0.0 else math.inf
+    elif climb < 0.0:
+        vertical = -climb / downward if downward > 0.0 else math.inf
+    if not (upward >= 0.0 and downward >= 0.0 and vertical < math.inf):  # it cannot even hold its height
+        return math.inf
+    if level < 1e-6:
         calm_enough = wind_e * wind_e + wind_n * wind_n <= airspeed * airspeed
-        return vertical if hovers > 0.0 and calm_enough else math.inf
-    along = (wind_e * east + wind_n * north) / level
-    cross = (wind_n * east - wind_e * north) / level
-    speed = ground_speed(model, airspeed, along, cross)
-    if speed <= 0.0:
+        return vertical if performance[4] > 0.0 and calm_enough else math.inf
+    along = wind_e * east + wind_n * north
+    cross = wind_n * east - wind_e * north
+    speed = ground_speed(performance[0], airspeed, along, cross)
+    if not speed > 0.0:
         return math.inf
     horizontal = level / speed
     if vertical <= horizontal:
         return horizontal
-    if hovers == 0.0:
+    if performance[4] == 0.0:
         return math.inf
-    if model == TRIANGLE and along - math.sqrt(airspeed * airspeed - cross * cross) > level / vertical:
+    if performance[0] == TRIANGLE and along - math.sqrt(airspeed * airspeed - cross * cross) > level / vertical:
         return math.inf  # the tail wind pushes it faster than it can climb
     return vertical
 
@@ -106,21 +104,17 @@ def integrate_legs(
     for i in range(n):
         de, dn, du = vectors[i, 0], vectors[i, 1], vectors[i, 2]
         length = math.sqrt(de * de + dn * dn + du * du)
+        level = math.hypot(de, dn)
+        east = de / level if level > 0.0 else 0.0
+        north = dn / level if level > 0.0 else 0.0
         if length == 0.0:
             continue
-        e, u_n, u = de / length, dn / length, du / length
-        level = math.hypot(e, u_n)
         for k in range(first[i], first[i + 1]):
-            we, wn, wu = winds[k, 0], winds[k, 1], winds[k, 2]
-            if math.isnan(we):
-                result[i, 0] = math.inf
-                break
-            share = weights[k]
-            result[i, 0] += share * length * slowness(performance, e, u_n, u, we, wn, wu)
-            result[i, 1] += share * length * wind_angle(e, u_n, u, we, wn, wu)
-            if level > 1e-9:
-                result[i, 2] += share * (we * e + wn * u_n) / level
-                result[i, 3] += share * (we * u_n - wn * e) / level
+            we, wn, wu, share = winds[k, 0], winds[k, 1], winds[k, 2], weights[k]
+            result[i, 0] += share * leg_seconds(performance, level, east, north, du, we, wn, wu)
+            result[i, 1] += share * length * wind_angle(de, dn, du, we, wn, wu)
+            result[i, 2] += share * (we * east + wn * north)
+            result[i, 3] += share * (we * north - wn * east)
     return result
 
 
@@ -135,3 +129,44 @@ def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
             means[i] += wind_angle(vectors[i, 0], vectors[i, 1], vectors[i, 2], winds[k, 0], winds[k, 1], winds[k, 2])
         means[i] /= max(each, 1)
     return means
+
+
+@numba.njit(cache=True)
+def enclosing_disc(winds: FloatArray) -> tuple[float, float, float]:
+    """A disc around all winds (n, 2 or more): its centre's components and its radius [m/s]; winds that are NaN are
+    left out.
+
+    Ritter 1990, "An efficient bounding sphere" (Graphics Gems): a disc over two far points, grown wherever one sticks
+    out.
+    """
+    n = winds.shape[0]
+    known = 0
+    while known < n and math.isnan(winds[known, 0]):
+        known += 1
+    if known == n:
+        return 0.0, 0.0, 0.0
+    ax, ay = winds[known, 0], winds[known, 1]
+    bx, by = _farthest(winds, ax, ay)
+    ax, ay = _farthest(winds, bx, by)
+    east, north, radius = 0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * math.hypot(ax - bx, ay - by)
+    for i in range(n):
+        away = math.hypot(winds[i, 0] - east, winds[i, 1] - north)
+        if away > radius:
+            grown = 0.5 * (radius + away)
+            share = (away - grown) / away
+            east += share * (winds[i, 0] - east)
+            north += share * (winds[i, 1] - north)
+            radius = grown
+    fx, fy = _farthest(winds, east, north)
+    return east, north, math.hypot(fx - east, fy - north)
+
+
+@numba.njit(cache=True)
+def _farthest(winds: FloatArray, east: float, north: float) -> tuple[float, float]:
+    """The wind that differs most from a given one."""
+    best, fx, fy = -1.0, east, north
+    for i in range(winds.shape[0]):
+        dx, dy = winds[i, 0] - east, winds[i, 1] - north
+        if dx * dx + dy * dy > best:
+            best, fx, fy = dx * dx + dy * dy, winds[i, 0], winds[i, 1]
+    return fx, fy

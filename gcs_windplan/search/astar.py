@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
 from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.kernels.best_first import edge_cost, search_csr, search_grid
+from gcs_windplan.kernels.best_first import edge_between, search_csr, search_grid
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
 from gcs_windplan.wind.field import WindField
 
@@ -78,7 +78,7 @@ def _search_grid(
     )  # fmt: skip
     direct = math.inf
     if np.linalg.norm(goal - start) <= _JOIN * veil.spacing and not veil.clearance.breaches(ends[:1], ends[1:])[0]:
-        direct = edge_cost(cost.performance(), setting, *(goal - start), *air[0], *air[1])
+        direct = edge_between(cost.performance(), setting, *(goal - start), *air[0], *air[1])
     if direct <= total and math.isfinite(direct):
         return ends, direct, expanded, reached
     if len(nodes) == 0:
@@ -102,9 +102,9 @@ def _joins(
     for i, node in enumerate(nodes):
         there, blows = windy.points[node], windy.winds[node]
         if outward:
-            costs[i] = edge_cost(performance, setting, *(there - site), *air, *blows)
+            costs[i] = edge_between(performance, setting, *(there - site), *air, *blows)
         else:
-            costs[i] = edge_cost(performance, setting, *(site - there), *blows, *air)
+            costs[i] = edge_between(performance, setting, *(site - there), *blows, *air)
     flyable = np.isfinite(costs)
     return nodes[flyable], costs[flyable]
 

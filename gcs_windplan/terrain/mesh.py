@@ -10,14 +10,14 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.kernels import mesh as kernels
+from gcs_windplan.kernels import meshes, plan_bins
 from gcs_windplan.terrain.dem import as_rows
 from gcs_windplan.terrain.surface import Extent
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanBins:
-    """Squares over the plan and the boxes that overlap each; see `kernels.mesh`."""
+    """Squares over the plan and the boxes that overlap each; see `kernels.plan_bins`."""
 
     grid: FloatArray
     heads: IntArray
@@ -30,7 +30,7 @@ class PlanBins:
         low, high = triangles[:, :, :2].min(axis=1) - reach, triangles[:, :, :2].max(axis=1) + reach
         boxes = np.ascontiguousarray(np.hstack([low, high]))
         grid = _bin_grid(boxes)
-        return cls(grid, *kernels.fill_bins(boxes, grid))
+        return cls(grid, *plan_bins.fill_bins(boxes, grid))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +83,7 @@ class MeshTerrain:
     def heights_at(self, places: FloatArray) -> FloatArray:
         """The highest surface at local places (n, 2 or more) [m], shape (n,); NaN where there is none."""
         bins = self._bins
-        return kernels.surface_heights(self.triangles, bins.grid, bins.heads, bins.members, as_rows(places))
+        return meshes.surface_heights(self.triangles, bins.grid, bins.heads, bins.members, as_rows(places))
 
     def leg_heights(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """The smallest and the largest height of legs (n, 3) over the ground, exact, shape (n, 2) [m].
@@ -92,7 +92,7 @@ class MeshTerrain:
         bridge. Legs may be vertical or of no length.
         """
         bins = self._bins
-        return kernels.surface_leg_heights(
+        return meshes.surface_leg_heights(
             self.triangles, bins.grid, bins.heads, bins.members, as_rows(starts), as_rows(ends)
         )
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.kernels import mesh as kernels
+from gcs_windplan.kernels import solids
 from gcs_windplan.terrain.boxtree import BoxTree
 from gcs_windplan.terrain.dem import as_rows
 from gcs_windplan.terrain.mesh import PlanBins, mesh_triangles
@@ -104,7 +104,7 @@ class Obstacles:
         if not self.items:
             return np.full(len(places), -np.inf)
         bins = self._bins
-        return kernels.solid_tops(
+        return solids.solid_tops(
             self.triangles, self._margins, lifts[self._owners], bins.grid, bins.heads, bins.members, places
         )
 
@@ -119,7 +119,7 @@ class Obstacles:
         if not self.items:
             return np.full(len(starts), np.inf)
         bins, tree = self._bins, self._tree
-        return kernels.solid_leg_margins(
+        return solids.solid_leg_margins(
             self.triangles,
             self._owners,
             self._margins,

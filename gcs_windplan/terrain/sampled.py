@@ -18,7 +18,7 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError
-from gcs_windplan.kernels import mesh as kernels
+from gcs_windplan.kernels import area_test
 from gcs_windplan.terrain.dem import Dem, as_rows
 from gcs_windplan.terrain.mesh import MeshTerrain, PlanBins
 
@@ -41,7 +41,7 @@ def sampled_collisions(
         raise InputError(f"step {step} m must be positive, tolerance {tolerance} must not be negative")
     triangles = _triangles(ground)
     bins = PlanBins.over(triangles)
-    return kernels.sampled_collisions(
+    return area_test.sampled_collisions(
         triangles, bins.grid, bins.heads, bins.members, as_rows(starts), as_rows(ends), step, tolerance
     )
 

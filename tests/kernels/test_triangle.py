@@ -12,8 +12,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from gcs_windplan.cost import integrate, performance_of
-from gcs_windplan.kernels.best_first import edge_time
-from gcs_windplan.kernels.triangle import ground_speed, slowness, wind_angle
+from gcs_windplan.kernels import best_first
+from gcs_windplan.kernels.triangle import ground_speed, leg_seconds, wind_angle
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import ConstantWind, Diverging, Jet, Rotation
 from tests.oracles.flying import naive_angle, naive_edge_time, naive_slowness
@@ -34,14 +34,18 @@ vehicles = st.builds(
 def test_slowness_equals_its_twin(vehicle, direction, wind):
     unit = np.array(direction) / math.hypot(*direction)
     expected = naive_slowness(vehicle, unit, wind)
-    found = slowness(performance_of(vehicle), *unit, *wind)
+    level = math.hypot(unit[0], unit[1])
+    track = (unit[0] / level, unit[1] / level) if level > 0 else (0.0, 0.0)
+    found = leg_seconds(performance_of(vehicle), level, *track, unit[2], *wind)
     assert found == pytest.approx(expected, rel=1e-9) or (math.isinf(found) and expected > 1e6)
 
 
 @given(vehicles, directions, st.tuples(speeds, speeds, st.just(0.0)), st.tuples(speeds, speeds, st.just(0.0)))
 def test_edge_time_equals_its_twin(vehicle, vector, a, b):
     expected = naive_edge_time(vehicle, np.array(vector) * 100, a, b)
-    found = edge_time(performance_of(vehicle), *(np.array(vector) * 100), *a, *b)
+    setting = np.zeros(best_first.SETTINGS)
+    setting[best_first.CODE] = best_first.TIME
+    found = best_first.edge_between(performance_of(vehicle), setting, *(np.array(vector) * 100), *a, *b)
     assert found == pytest.approx(expected, rel=1e-9) or expected > 1e8
 
 

@@ -41,12 +41,10 @@ def naive_slowness(vehicle, direction, wind) -> float:
 
 
 def naive_edge_time(vehicle, vector, wind_a, wind_b) -> float:
-    """Simpson's rule over three winds."""
+    """The trapezoidal rule over both winds."""
     length = float(np.linalg.norm(vector))
     direction = np.asarray(vector) / length
-    middle = (np.asarray(wind_a) + np.asarray(wind_b)) / 2
-    a, m, b = (naive_slowness(vehicle, direction, w) for w in (wind_a, middle, wind_b))
-    return length * (a + 4 * m + b) / 6 if math.isfinite(a + b) else math.inf
+    return length * (naive_slowness(vehicle, direction, wind_a) + naive_slowness(vehicle, direction, wind_b)) / 2
 
 
 def naive_angle(direction, wind) -> float:
