@@ -1,8 +1,16 @@
-"""The wind along legs: integrals by Gauss-Legendre quadrature, in panels that resolve the field."""
+"""The wind along legs: integrals by Simpson's rule, in panels that resolve the field and are halved where it changes
+fast.
+
+At a jump in the wind (the edge of a jet, a front) the panels around it are halved until they are a thousandth of their
+first length, so that a leg's time depends smoothly on where it crosses the jump. Without that, shaping would get stuck
+there: each vertex would sit in a dent of the quadrature's own making.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -11,9 +19,10 @@ from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, integrate_legs
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
-_FRACTIONS, _SHARES = (_NODES + 1) / 2, _WEIGHTS / 2
-_MOST_PANELS = 512
+_MOST_PANELS: Final = 512  # of a leg, before any is halved
+_HALVINGS: Final = 10
+_CALM: Final = 0.02  # of the airspeed: a change of wind over half a panel that needs no halving
+_SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,20 +49,64 @@ def integrate(
 ) -> LegIntegrals:
     """Integrate along straight legs (n, 3) in the wind as it is `seconds` after departure."""
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
-    first, weights, points = _sample(starts, vectors, wind.resolution)
-    winds = np.ascontiguousarray(wind.at(points, seconds))
-    table = integrate_legs(performance_of(vehicle), vectors, first, weights, winds)
+    lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+    panels = np.clip(np.ceil(lengths / wind.resolution), 1, _MOST_PANELS).astype(np.int64)
+
+    def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
+        return wind.at(starts[leg] + share[:, None] * vectors[leg], seconds)
+
+    leg, widths, winds = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
+    first = np.zeros(len(vectors) + 1, dtype=np.int64)
+    np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
+    weights = (widths[:, None] * _SIMPSON).ravel()
+    table = integrate_legs(performance_of(vehicle), vectors, first, weights, winds.reshape(-1, 3))
     return LegIntegrals(table[:, 0], table[:, 1], table[:, 2], table[:, 3])
 
 
-def _sample(starts: FloatArray, vectors: FloatArray, resolution: float) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Quadrature points on each leg: where each leg's begin, their weights (k,), the points (k, 3)."""
-    lengths = np.linalg.norm(vectors, axis=1)
-    panels = np.clip(np.ceil(lengths / resolution), 1, _MOST_PANELS).astype(np.int64)
-    first = np.zeros(len(panels) + 1, dtype=np.int64)
-    np.cumsum(3 * panels, out=first[1:])
-    leg = np.repeat(np.arange(len(panels)), 3 * panels)
-    within = np.arange(first[-1]) - first[leg]
-    fraction = (within // 3 + _FRACTIONS[within % 3]) / panels[leg]
-    weights = _SHARES[within % 3] / panels[leg]
-    return first, weights, starts[leg] + fraction[:, None] * vectors[leg]
+def _first_panels(
+    panels: IntArray, wind_at: Callable[[IntArray, FloatArray], FloatArray]
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Equal panels on each leg: their leg, begin and width as shares of it (k,), winds at both ends and middle (k, 3,
+    3)."""
+    knots = 2 * panels + 1
+    first = np.cumsum(knots) - knots
+    leg = np.repeat(np.arange(len(panels)), knots)
+    share = (np.arange(len(leg)) - first[leg]) / (2.0 * panels[leg])
+    winds = wind_at(leg, share)
+    of = np.repeat(np.arange(len(panels)), panels)
+    nth = np.arange(len(of)) - (np.cumsum(panels) - panels)[of]
+    knot = first[of] + 2 * nth
+    begins, widths = nth / panels[of], 1.0 / panels[of]
+    return of, begins, widths, np.stack([winds[knot], winds[knot + 1], winds[knot + 2]], axis=1)
+
+
+def _halved(
+    leg: IntArray,
+    begins: FloatArray,
+    widths: FloatArray,
+    winds: FloatArray,
+    wind_at: Callable[[IntArray, FloatArray], FloatArray],
+    calm: float,
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """The panels with those halved in which the wind changes by more than `calm` [m/s]; sorted by leg."""
+    done: list[tuple[IntArray, FloatArray, FloatArray]] = []
+    for _ in range(_HALVINGS):
+        rough = np.abs(np.diff(winds, axis=1)).max(axis=(1, 2)) > calm
+        if not rough.any():
+            break
+        done.append((leg[~rough], widths[~rough], winds[~rough]))
+        leg, begins, widths, winds = leg[rough], begins[rough], widths[rough], winds[rough]
+        quarters = wind_at(np.tile(leg, 2), np.concatenate([begins + 0.25 * widths, begins + 0.75 * widths]))
+        before, after = quarters[: len(leg)], quarters[len(leg) :]
+        winds = np.concatenate(
+            [
+                np.stack([winds[:, 0], before, winds[:, 1]], axis=1),
+                np.stack([winds[:, 1], after, winds[:, 2]], axis=1),
+            ]
+        )
+        begins = np.concatenate([begins, begins + 0.5 * widths])
+        leg, widths = np.tile(leg, 2), np.tile(0.5 * widths, 2)
+    done.append((leg, widths, winds))
+    leg, widths, winds = (np.concatenate(parts) for parts in zip(*done, strict=True))
+    order = np.argsort(leg, kind="stable")
+    return leg[order], widths[order], np.ascontiguousarray(winds[order])

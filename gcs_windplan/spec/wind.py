@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gcs_windplan import wind as air  # its readers are imported when first asked for: netCDF4 is heavy
@@ -18,7 +19,7 @@ def build_wind(document: MissionDocument, frame: LocalFrame, terrain: Terrain, a
     """The wind; raises `WindError`."""
     model = document.model.wind
     if model.netcdf is not None:
-        return air.read_netcdf(
+        forecast = air.read_netcdf(
             document.beside(model.netcdf),
             frame,
             terrain.heights_at,
@@ -26,6 +27,7 @@ def build_wind(document: MissionDocument, frame: LocalFrame, terrain: Terrain, a
             _overlap(area, terrain.extent),
             extend=model.extend == "nearest",
         )
+        return replace(forecast, ground_resolution=terrain.resolution)
     field: WindField = air.Calm()
     if model.constant is not None:
         field = air.ConstantWind.from_direction(model.constant.speed, model.constant.from_, frame)

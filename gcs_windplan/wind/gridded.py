@@ -30,10 +30,11 @@ class GriddedWind:
     otherwise above mean sea level. One level alone holds at every height.
 
     Between levels, nodes and times the wind is linear. Below the lowest level the lowest level's wind is
-    taken, which is rather too strong than too weak. Everything else outside raises `WindError`: above the
-    highest level, outside of the area unless `extend` (then the nearest edge's wind is taken), and outside of
-    `window` [s since departure], which is from the first to the last time, and always for a single time, if
-    not given.
+    taken, which is rather too strong than too weak. Above the highest level it is not known: NaN. Everything else
+    outside raises `WindError`: outside of the area unless `extend` (then the nearest edge's wind is taken), and
+    outside of `window` [s since departure], which is from the first to the last time, and always for a single time,
+    if not given. `ground_resolution` [m] is the ground's own, where known: wind at levels above the ground changes
+    with it.
     """
 
     name: str
@@ -47,6 +48,7 @@ class GriddedWind:
     ground: Ground | None = None
     window: tuple[float, float] | None = None
     extend: bool = False
+    ground_resolution: float = math.inf
     _chart: Chart = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -67,11 +69,12 @@ class GriddedWind:
 
     @property
     def resolution(self) -> float:
-        """Half of the smallest spacing of the grid [m], infinite for a single column."""
+        """Half of the smallest spacing of the grid [m], or the ground's own where the levels follow it."""
         south_north = np.diff(self.latitudes) * METRES_PER_DEGREE
         widest = np.cos(np.radians(np.abs(self.latitudes).max()))
         west_east = np.diff(self.longitudes) * METRES_PER_DEGREE * widest
-        return float(min(np.min(south_north, initial=math.inf), np.min(west_east, initial=math.inf)) / 2)
+        across = float(min(np.min(south_north, initial=math.inf), np.min(west_east, initial=math.inf)) / 2)
+        return across if self.ground is None else min(across, self.ground_resolution)
 
     def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3), `seconds` after departure; the upward component is 0.
