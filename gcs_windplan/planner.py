@@ -1,6 +1,6 @@
 """The planner: the one place where terrain, wind, vehicle, veil, cost, search and shaping meet.
 
-request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shortcuts ─▶ flight ─▶ Plan
+request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shaping ─▶ flight ─▶ Plan
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from gcs_windplan.errors import RequestError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, fly
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.search import WindyVeil, blow, find_path
-from gcs_windplan.shaping import shorten
+from gcs_windplan.shaping import shape
 from gcs_windplan.siting import choose_area, choose_layers, choose_spacing, stand_sites, windless_sites
 from gcs_windplan.veil import SHARE_OF_GRID, Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
 
@@ -132,7 +132,7 @@ def _plan(
         cost = LegCost(choice, request.wind, request.vehicle, windy.veil.edge_length, straight)
         path = find_path(windy, cost, start, goal)
         begin = time.perf_counter()
-        shaped = shorten(path.points, cost, rules)
+        shaped = shape(path.points, cost, rules)
         shaping_seconds += time.perf_counter() - begin
         search_seconds += path.seconds
         expanded += path.expanded

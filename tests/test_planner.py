@@ -64,7 +64,7 @@ def test_a_route_keeps_every_limit(graph, cost):
 def test_least_time_is_never_slower_than_least_distance(seed, strength):
     asked = request(rough_dem(seed), wind=WavyWind(seed, strength=strength))
     by_time, by_distance = gw.plan_routes(asked, [gw.CostChoice("time"), gw.CostChoice("distance")])
-    shaping = 1.01  # shortcuts join vertices of the path only: what is left of the staircase differs from path to path
+    shaping = 1.002  # of the cheapest polyline found, the one with the fewest waypoints within 0.05 % is taken
     assert by_time.totals.seconds <= by_distance.totals.seconds * shaping
     assert by_distance.totals.length <= by_time.totals.length * shaping
 
@@ -86,7 +86,11 @@ def test_low_in_a_head_wind_high_in_a_tail_wind():
         sites = {"start": Site("start", 0.0, -800.0), "goal": Site("goal", 0.0, 800.0)}
         plan = gw.plan_route(request(dem, wind=wind, vehicle=Vehicle(10.0, climb=5.0, descent=5.0), **sites))
         middle = [w.above_ground for w in plan.waypoints[1:-1]]
-        assert max(middle, default=40.0) == pytest.approx(80.0 if high else 40.0)
+        if high:
+            assert max(middle) == pytest.approx(110.0, abs=1.0)  # up to the limit
+        else:
+            assert min(middle) == pytest.approx(25.0, abs=1.0)  # down to the clearance
+            assert max(middle) <= 40.0 + 1e-6
 
 
 def test_heading_and_ground_speed_make_good_the_track():

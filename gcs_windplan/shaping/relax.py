@@ -1,0 +1,142 @@
+"""Vertices that move while the cost falls: from the graph's directions to those that the wind and the ground ask for.
+
+A graph knows 8, 16 or 32 directions and a few heights; a route through it is a percent or so from the best. Here each
+vertex tries places around it, all that are no neighbours at once, and moves where the two legs at it become cheaper
+and stay clear. Steps grow with success and shrink without. When nothing moves any more, the legs are halved and the
+finer polyline is relaxed again, as long as that gains anything.
+
+The directions turn by the golden angle from sweep to sweep. Where the wind jumps, the best route has a kink on the
+jump's line, and all around it the cost rises: only a step along that line, wherever it lies, gains anything.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
+from gcs_windplan.cost import LegCost
+from gcs_windplan.veil import Clearance
+
+_SWEEPS: Final = 60  # on one polyline
+_FIRST_STEP: Final = 0.25  # of the mean length of the two legs at a vertex
+_LAST_STEP: Final = 1e-3  # of the same, where a vertex comes to rest
+_WORTH: Final = 2e-4  # of the cost, that halving all legs must gain
+_MOST_VERTICES: Final = 129
+_GROW, _SHRINK = 1.5, 0.6
+_GOLDEN: Final = 2.399963  # [rad] the golden angle: no direction comes twice
+_RISE: Final = 0.1  # of a level step: heights differ less than places do
+_SPARE: Final = 8e-4  # of the cost, that fewer waypoints may take
+
+
+def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float = _SPARE) -> FloatArray:
+    """A polyline (m, 3) with the same ends that is never dearer than the given one (n, 3), all legs clear.
+
+    Of all those found, the one with the fewest waypoints whose cost lies within `spare` of the cheapest.
+    """
+    given = cost.of_polyline(points)
+    if not np.isfinite(given):
+        return points
+    best, best_cost = _settle(points, cost, clearance)
+    while 2 * len(best) - 1 <= _MOST_VERTICES:
+        finer, finer_cost = _settle(_halve(best), cost, clearance)
+        gain = best_cost - finer_cost
+        if gain > 0:
+            best, best_cost = finer, finer_cost
+        if gain < _WORTH * best_cost:
+            break
+    limit = min(given, (1 + spare) * best_cost)
+    while True:
+        thinned = thin(best, cost, clearance, limit)
+        if len(thinned) == len(best):
+            break
+        best, _ = _settle(thinned, cost, clearance)  # the fewer that are left find better places, and free others
+    return best if cost.of_polyline(best) <= given else points
+
+
+def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float) -> FloatArray:
+    """Drop the vertices that matter least, one after the other, as long as the polyline costs at most `limit`."""
+    legs = cost.of_legs(points[:-1], points[1:])
+    while len(points) > 2:
+        skip = cost.of_legs(points[:-2], points[2:])
+        skip[clearance.breaches(points[:-2], points[2:]) != 0] = np.inf
+        extra = skip - legs[:-1] - legs[1:]
+        least = int(np.argmin(extra))
+        if not legs.sum() + extra[least] <= limit:
+            break
+        points = np.delete(points, least + 1, axis=0)
+        legs = np.concatenate([legs[:least], skip[least : least + 1], legs[least + 2 :]])
+    return points
+
+
+def _pattern(sweep: int) -> FloatArray:
+    """Where a vertex tries to go, (k, 3) in steps: 8 level directions, others each sweep; up, down and slanted."""
+    turns = sweep * _GOLDEN + np.arange(8) * (np.pi / 4)
+    level = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(8)])
+    slanted = level[::2] + np.array([0.0, 0.0, _RISE])
+    upright = np.array([[0.0, 0.0, _RISE], [0.0, 0.0, -_RISE]])
+    return np.concatenate([level, upright, slanted, slanted * (1.0, 1.0, -1.0)])
+
+
+def _halve(points: FloatArray) -> FloatArray:
+    """The polyline with a vertex more in the middle of each leg."""
+    finer = np.empty((2 * len(points) - 1, 3))
+    finer[::2] = points
+    finer[1::2] = (points[:-1] + points[1:]) / 2
+    return finer
+
+
+def _settle(points: FloatArray, cost: LegCost, clearance: Clearance) -> tuple[FloatArray, float]:
+    """Move the inner vertices until none gains any more; the polyline and its cost."""
+    points = points.copy()
+    legs = cost.of_legs(points[:-1], points[1:])
+    n = len(points)
+    size = np.full(n, _FIRST_STEP)
+    for sweep in range(2 * _SWEEPS):
+        moving = np.arange(1 + sweep % 2, n - 1, 2)
+        moving = moving[size[moving] >= _LAST_STEP]
+        if len(moving) == 0:
+            if not (size[1:-1] >= _LAST_STEP).any():
+                break
+            continue
+        moved = _try_around(points, legs, moving, size[moving], cost, clearance, sweep)
+        size[moving] *= np.where(moved, _GROW, _SHRINK)
+        np.minimum(size, _FIRST_STEP, out=size)
+    return points, float(legs.sum())
+
+
+def _try_around(
+    points: FloatArray,
+    legs: FloatArray,
+    moving: IntArray,
+    size: FloatArray,
+    cost: LegCost,
+    clearance: Clearance,
+    sweep: int,
+) -> BoolArray:
+    """Move each of the vertices `moving`, no two of them neighbours, to the best place around it; which have moved.
+
+    `points` and the costs of the `legs` are changed in place.
+    """
+    before, after = points[moving - 1], points[moving + 1]
+    reach = 0.5 * (np.linalg.norm(points[moving] - before, axis=1) + np.linalg.norm(after - points[moving], axis=1))
+    tried = points[moving] + size[:, None] * reach[:, None] * _pattern(sweep)[:, None, :]
+    shape = tried.shape[:2]
+    places = tried.reshape(-1, 3)
+    into = (np.broadcast_to(before, tried.shape).reshape(-1, 3), places)
+    out_of = (places, np.broadcast_to(after, tried.shape).reshape(-1, 3))
+    starts, ends = np.concatenate([into[0], out_of[0]]), np.concatenate([into[1], out_of[1]])
+    price = np.full(len(starts), np.inf)
+    clear = clearance.breaches(starts, ends) == 0
+    clear = np.tile(clear[: len(places)] & clear[len(places) :], 2)
+    price[clear] = cost.of_legs(starts[clear], ends[clear])
+    first, second = price[: len(places)].reshape(shape), price[len(places) :].reshape(shape)
+    choice = np.argmin(first + second, axis=0)
+    pick = np.arange(len(moving))
+    gained: BoolArray = first[choice, pick] + second[choice, pick] < legs[moving - 1] + legs[moving] - 1e-12
+    kept = moving[gained]
+    points[kept] = tried[choice, pick][gained]
+    legs[kept - 1] = first[choice, pick][gained]
+    legs[kept] = second[choice, pick][gained]
+    return gained
