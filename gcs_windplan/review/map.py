@@ -32,29 +32,41 @@ _ROUTES = (
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (6, 1.5, 1.5, 1.5)))
 
 
-def draw_map(plans: Sequence[Plan], dpi: int = 130) -> bytes:
+def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
     """One or several routes of one request on a map, as PNG.
 
     A single route is coloured by its ground speed; several are told apart by colour and dash.
     """
     plan = plans[0]
     extent = _frame_of(plans)
-    depth = (extent.north - extent.south) / (extent.east - extent.west)
-    width = _SIDE / max(1.0, depth)
-    figure = Figure(figsize=(width + 1.6, 1.5 + width * depth), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    figure, axes, beside = _sheet(extent)
     _draw_relief(axes, plan, extent)
     _draw_areas(axes, plan)
     _draw_wind(axes, plan, extent)
     if len(plans) == 1:
         lines = _draw_by_speed(axes, plan)
-        figure.colorbar(lines, ax=axes, label="ground speed [m/s]", shrink=0.75, pad=0.01)
+        figure.colorbar(lines, cax=beside, label="ground speed [m/s]")
     else:
+        beside.remove()
         _draw_side_by_side(axes, plans)
     _draw_sites(axes, plan)
     _dress(axes, plans, extent)
     return png_bytes(figure, dpi)
+
+
+def _sheet(extent: Extent) -> tuple[Figure, Any, Any]:
+    """A figure with axes of the extent's shape, and axes for a colour bar. A layout engine would take 0.3 s more."""
+    depth = (extent.north - extent.south) / (extent.east - extent.west)
+    width = _SIDE / max(1.0, depth)
+    height = width * depth
+    whole = np.array([width + 1.9, height + 1.3])
+    figure = Figure(figsize=(whole[0], whole[1]))
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.8 / whole[0], 0.55 / whole[1], width / whole[0], height / whole[1]))
+    beside = figure.add_axes(
+        ((0.8 + width + 0.15) / whole[0], (0.55 + 0.12 * height) / whole[1], 0.2 / whole[0], 0.76 * height / whole[1])
+    )
+    return figure, axes, beside
 
 
 def _frame_of(plans: Sequence[Plan]) -> Extent:

@@ -15,11 +15,14 @@ from gcs_windplan.review.png import png_bytes
 _SAMPLES = 1200
 
 
-def draw_profile(plan: Plan, dpi: int = 130) -> bytes:
+def draw_profile(plan: Plan, dpi: int = 120) -> bytes:
     """Ground, clearance, height limit and route over the distance flown; below it ground speed and wind, as PNG."""
-    figure = Figure(figsize=(10.5, 5.6), layout="constrained")
+    figure = Figure(figsize=(10.5, 5.6))
     FigureCanvasAgg(figure)
-    heights, speeds = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
+    heights, speeds = figure.subplots(
+        2, 1, sharex=True, height_ratios=[2.4, 1],
+        gridspec_kw={"left": 0.07, "right": 0.985, "top": 0.94, "bottom": 0.09, "hspace": 0.07},
+    )  # fmt: skip
     flown = np.concatenate([[0.0], np.cumsum([leg.distance for leg in plan.legs])])
     _draw_heights(heights, plan, flown)
     _draw_speeds(speeds, plan, flown)

@@ -21,7 +21,8 @@ from gcs_windplan.veil import Clearance
 
 _SWEEPS: Final = 60  # on one polyline
 _FIRST_STEP: Final = 0.25  # of the mean length of the two legs at a vertex
-_LAST_STEP: Final = 1e-3  # of the same, where a vertex comes to rest
+_TOUCH: Final = 0.05  # the first step where vertices are nearly at rest
+_LAST_STEP: Final = 1.5e-3  # of the same, where a vertex comes to rest
 _WORTH: Final = 2e-4  # of the cost, that halving all legs must gain
 _MOST_VERTICES: Final = 129
 _GROW, _SHRINK = 1.5, 0.6
@@ -51,7 +52,9 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
         thinned = thin(best, cost, clearance, limit)
         if len(thinned) == len(best):
             break
-        best, _ = _settle(thinned, cost, clearance)  # the fewer that are left find better places, and free others
+        best, _ = _settle(
+            thinned, cost, clearance, _TOUCH
+        )  # the fewer that are left find better places, and free others
     return best if cost.of_polyline(best) <= given else points
 
 
@@ -87,12 +90,14 @@ def _halve(points: FloatArray) -> FloatArray:
     return finer
 
 
-def _settle(points: FloatArray, cost: LegCost, clearance: Clearance) -> tuple[FloatArray, float]:
+def _settle(
+    points: FloatArray, cost: LegCost, clearance: Clearance, first_step: float = _FIRST_STEP
+) -> tuple[FloatArray, float]:
     """Move the inner vertices until none gains any more; the polyline and its cost."""
     points = points.copy()
     legs = cost.of_legs(points[:-1], points[1:])
     n = len(points)
-    size = np.full(n, _FIRST_STEP)
+    size = np.full(n, first_step)
     for sweep in range(2 * _SWEEPS):
         moving = np.arange(1 + sweep % 2, n - 1, 2)
         moving = moving[size[moving] >= _LAST_STEP]
