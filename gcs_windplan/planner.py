@@ -90,6 +90,7 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
         np.inf if request.max_height is None else request.max_height,
         request.obstacles,
         request.airspace,
+        request.collision_test,
     )
     layers = choose_layers(request)
     sites, problems = stand_sites(request, rules, layers)

@@ -12,7 +12,7 @@ from gcs_windplan.errors import Problem
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.terrain import Obstacles, Terrain
 from gcs_windplan.vehicle import Vehicle
-from gcs_windplan.veil import Airspace
+from gcs_windplan.veil import Airspace, CollisionTest
 from gcs_windplan.wind.field import WindField
 
 Finish: TypeAlias = Literal["land", "return", "hold"]
@@ -86,6 +86,7 @@ class Request:
     margin: float | None = None
     obstacles: Obstacles | None = None
     airspace: Airspace = field(default_factory=Airspace)
+    collision_test: CollisionTest = "exact"
     departure: datetime | None = None
     finish: Finish = "land"
     export: Export = field(default_factory=Export)

@@ -68,6 +68,7 @@ def read_mission(path: Path | str) -> Request:
         margin=graph.margin,
         obstacles=obstacles,
         airspace=airspace,
+        collision_test=model.collision_test,
         departure=model.departure,
         finish=model.finish,
         export=Export(**model.export.model_dump()),

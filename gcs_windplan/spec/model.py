@@ -208,6 +208,10 @@ class MissionModel(Section):
     clearance: PositiveLength = Field(
         default=DEFAULT_CLEARANCE, description="smallest vertical distance of any leg to the ground"
     )
+    collision_test: Literal["exact", "paper"] = Field(
+        default="exact",
+        description="whether a leg clears the ground: exactly, by the clearance, or by the paper's sampled test",
+    )
     max_height: PositiveLength | None = Field(default=None, description="largest height above ground of any leg")
     cost: CostModel = Field(default=CostModel(name="time"), description="what the route is to be the best in")
     graph: GraphModel = Field(default=GraphModel(uniform=UniformModel()), description="the nodes that are searched")

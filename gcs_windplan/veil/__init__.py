@@ -1,7 +1,7 @@
 """The veil: nodes laid over the terrain, and the legs between them that are clear."""
 
 from gcs_windplan.veil.airspace import Airspace, Prism
-from gcs_windplan.veil.clearance import BREACHES, Clearance
+from gcs_windplan.veil.clearance import BREACHES, Clearance, CollisionTest
 from gcs_windplan.veil.grid import GridVeil, breaches_around, grid_steps, lay_grid
 from gcs_windplan.veil.prm import SHARE_OF_GRID, PrmVeil, lay_prm, roadmap_radius
 
@@ -10,6 +10,7 @@ __all__ = [
     "SHARE_OF_GRID",
     "Airspace",
     "Clearance",
+    "CollisionTest",
     "GridVeil",
     "Prism",
     "PrmVeil",

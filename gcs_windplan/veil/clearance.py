@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias, cast
 
 import numpy as np
 
-from gcs_windplan.arrays import FlagArray, FloatArray
+from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray
 from gcs_windplan.veil.airspace import Airspace
 
 if TYPE_CHECKING:
-    from gcs_windplan.terrain import Obstacles, Terrain
+    from gcs_windplan.terrain import Dem, MeshTerrain, Obstacles, Terrain
 
 TOO_LOW: Final = 1
 UNKNOWN_GROUND: Final = 2
@@ -27,6 +27,9 @@ BREACHES: Final = {
     AIRSPACE: "keep-out or keep-in area",
 }
 
+CollisionTest: TypeAlias = Literal["exact", "paper"]
+
+_PAPER_SAMPLES = 4  # of a leg, on the length of a terrain's cell
 _SLACK = 1e-6  # [m] a node laid at exactly the clearance is clear
 
 
@@ -36,6 +39,9 @@ class Clearance:
 
     `minimum` is the smallest, `maximum` the largest vertical distance to the ground [m] anywhere along the leg;
     obstacles keep their own margins. All tests are exact: nothing is sampled.
+
+    With the `test` `paper` a leg is too low only where the paper's sampled area test (8) finds it to touch a triangle of
+    the ground; `minimum` then only lifts nodes above obstacles. It lets legs through thin ridges: for comparison.
     """
 
     terrain: Terrain
@@ -43,6 +49,7 @@ class Clearance:
     maximum: float = np.inf
     obstacles: Obstacles | None = None
     airspace: Airspace = field(default_factory=Airspace)
+    test: CollisionTest = "exact"
 
     def breaches(self, starts: FloatArray, ends: FloatArray) -> FlagArray:
         """What legs (n, 3) break, shape (n,): 0, or a sum of the flags in `BREACHES`."""
@@ -52,7 +59,7 @@ class Clearance:
         low, high = heights[:, 0], heights[:, 1]
         flags = np.zeros(len(starts), dtype=np.uint8)
         flags |= np.where(np.isnan(low), UNKNOWN_GROUND, 0).astype(np.uint8)
-        flags |= np.where(low < self.minimum - _SLACK, TOO_LOW, 0).astype(np.uint8)
+        flags |= np.where(self._too_low(starts, ends, low), TOO_LOW, 0).astype(np.uint8)
         flags |= np.where(high > self.maximum + _SLACK, TOO_HIGH, 0).astype(np.uint8)
         if self.obstacles is not None:
             margins = self.obstacles.leg_margins(starts, ends)
@@ -60,6 +67,15 @@ class Clearance:
         if self.airspace.keep_out or self.airspace.keep_in:
             flags |= np.where(self.airspace.breaches(starts, ends), AIRSPACE, 0).astype(np.uint8)
         return flags
+
+    def _too_low(self, starts: FloatArray, ends: FloatArray, low: FloatArray) -> BoolArray:
+        """Which legs (n, 3), whose smallest heights are `low` (n,), come too close to the ground."""
+        if self.test == "exact":
+            return low < self.minimum - _SLACK
+        from gcs_windplan.terrain import sampled_collisions
+
+        step = self.terrain.resolution / _PAPER_SAMPLES
+        return sampled_collisions(cast("Dem | MeshTerrain", self.terrain), starts, ends, step)
 
     def lifted(self, places: FloatArray, height: float) -> FloatArray:
         """Points (n, 3) at a height over the ground [m], lifted above obstacles where they would be inside one."""
