@@ -39,7 +39,8 @@ class Effort:
 class Plan:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
-    `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping.
+    `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `notes` say
+    what a pilot must know before flying it.
     """
 
     request: Request
@@ -48,6 +49,7 @@ class Plan:
     cost: float
     graph_cost: float
     effort: Effort
+    notes: tuple[str, ...] = ()
 
     @property
     def waypoints(self) -> tuple[Waypoint, ...]:
@@ -143,4 +145,18 @@ def _plan(
         route.append(shaped[1:])
     flight = fly(np.concatenate(route), request.frame, request.terrain, request.wind, request.vehicle)
     effort = Effort(windy.veil.size, expanded, vertices, veil_seconds, search_seconds, shaping_seconds)
-    return Plan(request, choice, flight, total, graph_total, effort)
+    return Plan(request, choice, flight, total, graph_total, effort, _notes(request, windy))
+
+
+def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
+    """What a pilot must know: models that flatter, tests that miss."""
+    notes = []
+    strongest = float(np.nanmax(np.hypot(windy.winds[:, 0], windy.winds[:, 1]), initial=0.0))
+    if request.vehicle.speed_model == "paper":
+        text = "the speed model `paper` counters cross wind for free: its times are some percent too short"
+        if strongest > request.vehicle.airspeed / 2:
+            text += f"; and in wind above half of the airspeed (here up to {strongest:.1f} m/s) zig-zag seems to pay"
+        notes.append(f"{text}. Plan with `triangle` to fly.")
+    if request.collision_test == "paper":
+        notes.append("the collision test `paper` samples: a leg may pass through a thin ridge. Fly with `exact`.")
+    return tuple(notes)

@@ -190,6 +190,16 @@ def test_speeds_that_cannot_be_flown(field, value):
         replace(Vehicle(12.0), **{field: value})
 
 
+def test_models_that_flatter_are_noted():
+    dem = rough_dem(1, relief=0.0)
+    asked = request(dem, wind=ConstantWind.from_direction(7.0, 250.0), vehicle=Vehicle(12.0, speed_model="paper"))
+    (note,) = gw.plan_route(replace(asked, layers=(40.0,))).notes
+    assert "cross wind for free" in note
+    assert "up to 7.0 m/s" in note
+    (note,) = gw.plan_route(request(dem, collision_test="paper", layers=(40.0,))).notes
+    assert "thin ridge" in note
+
+
 def test_plan_has_a_tidy_repr():
     text = repr(gw.plan_route(request(rough_dem(1, relief=0.0), layers=(40.0,))))
     assert text == "Plan('test', time: 2 waypoints, 1.95 km in 2 min 42 s, clearance 40.0 m)"

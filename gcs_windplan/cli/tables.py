@@ -41,7 +41,9 @@ def print_legs(plan: Plan) -> None:
     console = _console()
     console.print(table)
     for line in summary_lines(plan):
-        console.print(line, soft_wrap=True)
+        console.print(line, soft_wrap=True, markup=False)
+    for note in plan.notes:
+        console.print(f"note: {note}", soft_wrap=True, markup=False)
 
 
 def summary_lines(plan: Plan) -> list[str]:

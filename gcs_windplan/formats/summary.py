@@ -30,6 +30,7 @@ def format_summary(plan: Plan) -> str:
         "totals": asdict(plan.totals),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
+        "notes": list(plan.notes),
         "search": {
             "nodes": plan.effort.nodes,
             "expanded": plan.effort.expanded,
