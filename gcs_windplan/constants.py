@@ -8,4 +8,3 @@ KNOT = NAUTICAL_MILE / 3600  # [m/s] BIPM SI brochure, 8th edition, table 8
 INTERNATIONAL_FOOT = 0.3048  # [m] NIST SP 811, B.6
 US_SURVEY_FOOT = 1200 / 3937  # [m] NIST SP 811, B.6
 STATUTE_MILE = 1609.344  # [m] NIST SP 811, B.6
-LEGAL_HEIGHT_LIMIT = 120.0  # [m] above ground: Regulation (EU) 2019/947, UAS.OPEN.010 (2); 14 CFR 107.51 says 400 ft

@@ -16,6 +16,12 @@ from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
 
+def clock(seconds: float) -> str:
+    """A duration in minutes and seconds: 18:05."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d}"
+
+
 @dataclass(frozen=True, slots=True)
 class Waypoint:
     """A corner of the route.

@@ -15,12 +15,20 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import CostChoice, LegCost
 from gcs_windplan.errors import RequestError
-from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, fly
+from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.search import WindyVeil, blow, find_path
 from gcs_windplan.shaping import shape
-from gcs_windplan.siting import choose_area, choose_layers, choose_spacing, stand_sites, windless_sites
-from gcs_windplan.veil import SHARE_OF_GRID, Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
+from gcs_windplan.siting import (
+    choose_area,
+    choose_layers,
+    choose_nodes,
+    choose_spacing,
+    refuse_unwieldy,
+    stand_sites,
+    windless_sites,
+)
+from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +75,9 @@ class Plan:
         return self.flight.totals
 
     def __repr__(self) -> str:
-        minutes, seconds = divmod(round(self.totals.seconds), 60)
         return (
             f"Plan({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
-            f" {self.totals.length / 1000:.2f} km in {minutes} min {seconds:02d} s,"
+            f" {self.totals.length / 1000:.2f} km in {clock(self.totals.seconds)} min,"
             f" clearance {self.totals.clearance:.1f} m)"
         )
 
@@ -108,14 +115,10 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
 def _lay_veil(request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray) -> GridVeil | PrmVeil:
     """The veil that the request asks for."""
     area = choose_area(request, sites)
+    refuse_unwieldy(request, area, layers)
     graph = request.graph
     if isinstance(graph, Roadmap):
-        nodes = graph.nodes
-        if nodes is None:
-            spacing = choose_spacing(request, area)
-            cells = (area.east - area.west) * (area.north - area.south) / spacing**2
-            nodes = max(2, round(SHARE_OF_GRID * cells))
-        return lay_prm(rules, area, nodes, graph.seed, layers, sites, graph.radius)
+        return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
     return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
 
 

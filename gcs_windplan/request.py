@@ -66,8 +66,9 @@ class Request:
     """One planning job.
 
     `clearance` and `max_height` [m above ground] hold for every leg along its whole length. `layers` are heights above
-    ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. `locate` puts
-    file and line to a problem that names a field.
+    ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. A vehicle that
+    returns at the end flies home at `return_height` above home [m], or higher if it is. `locate` puts file and line
+    to a problem that names a field.
     """
 
     name: str
@@ -89,6 +90,7 @@ class Request:
     collision_test: CollisionTest = "exact"
     departure: datetime | None = None
     finish: Finish = "land"
+    return_height: float = 15.0
     export: Export = field(default_factory=Export)
     locate: Callable[[Problem], Problem] = lambda problem: problem
 

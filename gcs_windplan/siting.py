@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NoReturn
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import Problem
-from gcs_windplan.request import Request, Site, Uniform
+from gcs_windplan.errors import Problem, RequestError
+from gcs_windplan.request import Request, Roadmap, Site, Uniform
 from gcs_windplan.terrain import Extent
-from gcs_windplan.veil import Clearance
+from gcs_windplan.veil import SHARE_OF_GRID, Airspace, Clearance, roadmap_radius
 
 _USUAL_ROOM = 90.0  # [m] from the clearance up, where no height limit is given: 30 m and 120 m are the usual pair
 _LAYERS = (0.2, 0.5, 0.8)  # of the room between clearance and height limit
 _NODES_ALONG = 120  # of the area's longer side
 _MARGIN = 0.25  # of the longest section between two sites
+_MOST_NODES = 20_000_000  # of a grid: 5 GB
+_MOST_EDGES = 1e7  # of a roadmap: 3 GB
 _SLACK = 1e-6  # [m]
 
 
@@ -51,6 +54,44 @@ def choose_spacing(request: Request, area: Extent) -> float:
     return max(area.east - area.west, area.north - area.south) / _NODES_ALONG
 
 
+def choose_nodes(request: Request, area: Extent) -> int:
+    """The roadmap's places: the request's, or three quarters of what a uniform grid would have."""
+    if isinstance(request.graph, Roadmap) and request.graph.nodes is not None:
+        return request.graph.nodes
+    cells = (area.east - area.west) * (area.north - area.south) / choose_spacing(request, area) ** 2
+    return max(2, round(SHARE_OF_GRID * cells))
+
+
+def refuse_unwieldy(request: Request, area: Extent, layers: Sequence[float]) -> None:
+    """Raise `RequestError` for a veil without any node, or with more nodes or edges than fit into memory."""
+    width, depth = area.east - area.west, area.north - area.south
+    if isinstance(request.graph, Roadmap):
+        places = choose_nodes(request, area)
+        radius = request.graph.radius or roadmap_radius(places, area)
+        edges = (places * len(layers)) ** 2 / 2 * min(1.0, math.pi * radius**2 / (width * depth))
+        if edges > _MOST_EDGES:
+            text = (
+                f"{places} nodes in {len(layers)} layers within {radius:.0f} m make about {edges:.2g} edges, more than"
+            )
+            _refuse(request, f"{text} {_MOST_EDGES:.0g}: fewer nodes, layers or a smaller radius", "graph.prm")
+        return
+    spacing = choose_spacing(request, area)
+    nodes = (width / spacing + 1) * (depth / spacing + 1) * len(layers)
+    if nodes > _MOST_NODES:
+        text = (
+            f"{spacing:g} m over {width / 1000:.1f} x {depth / 1000:.1f} km in {len(layers)} layers makes {nodes:.2g}"
+        )
+        coarser = spacing * math.sqrt(nodes / _MOST_NODES)
+        _refuse(request, f"{text} nodes, more than {_MOST_NODES:.2g}: {coarser:.2g} m or more", "graph.uniform.spacing")
+    if spacing > max(width, depth):
+        text = f"{spacing:g} m is more than the area of {width / 1000:.2f} x {depth / 1000:.2f} km: refine it"
+        _refuse(request, f"{text}, or widen graph.margin", "graph.uniform.spacing")
+
+
+def _refuse(request: Request, text: str, field: str) -> NoReturn:
+    raise RequestError(request.locate(Problem(text, field)))
+
+
 def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
     """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them."""
     problems = _limits(request, layers)
@@ -59,9 +100,51 @@ def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> 
         ground = float(rules.terrain.heights_at(np.array([[site.east, site.north]]))[0])
         points[i] = site.east, site.north, _height(site, ground, layers[0])
         problem = _misplaced(site, points[i], ground, request, rules)
+        if problem is None and (site.field == "start" or (site.field == "goal" and request.finish == "land")):
+            problem = _column_blocked(points[i], ground, rules)
         if problem is not None:
             problems.append(Problem(problem, site.field))
+    if not problems and request.finish == "return":
+        problems += _return_blocked(request, points, rules)
     return points, problems
+
+
+def _column_blocked(point: FloatArray, ground: float, rules: Clearance) -> str | None:
+    """What stands in the way straight up from the ground to a point, or down to it."""
+    foot = point.copy()
+    foot[2] = ground
+    obstacles, keep_out = rules.obstacles, Airspace(rules.airspace.keep_out)
+    if broken := keep_out.broken_by(foot, point):
+        return f"the way straight up from the ground there crosses '{broken[0]}': move the site or correct the area"
+    if obstacles is not None and obstacles.leg_margins(foot[None], point[None])[0] < -_SLACK:
+        return "the way straight up from the ground there comes too close to an obstacle: move the site"
+    return None
+
+
+def _return_blocked(request: Request, points: FloatArray, rules: Clearance) -> list[Problem]:
+    """What the straight flight home breaks: at the goal's height, or the return height above home if that is more."""
+    home = float(rules.terrain.heights_at(points[:1])[0])
+    height = max(float(points[-1, 2]), home + request.return_height)
+    away, back = points[-1].copy(), points[0].copy()
+    away[2] = back[2] = height
+    heights = rules.terrain.leg_heights(away[None], back[None])[0]
+    problems = []
+    if not heights[0] >= request.clearance - _SLACK:
+        needed = height - home + request.clearance - heights[0]
+        text = (
+            f"the straight flight home at {height:.0f} m above sea level comes within {heights[0]:.1f} m of the ground"
+        )
+        if math.isnan(heights[0]):
+            text, needed = "the straight flight home leads over unknown ground", math.nan
+        advice = "land at the goal" + ("" if math.isnan(needed) else f", or set the vehicle's return altitude and"
+                                       f" `return_height` to {math.ceil(needed)} m")  # fmt: skip
+        problems.append(Problem(f"{text}: {advice}", "finish"))
+    if broken := rules.airspace.broken_by(away, back):
+        problems.append(Problem(f"the straight flight home breaks '{broken[0]}': land at the goal instead", "finish"))
+    obstacles = rules.obstacles
+    if obstacles is not None and obstacles.leg_margins(away[None], back[None])[0] < -_SLACK:
+        problems.append(Problem("the straight flight home comes too close to an obstacle: land at the goal", "finish"))
+    return problems
 
 
 def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:

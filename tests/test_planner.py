@@ -168,6 +168,47 @@ def test_every_contradiction_at_once():
     assert [problem.field for problem in caught.value.problems] == ["graph.layers.0", "start", "goal"]
 
 
+def test_take_off_and_landing_columns_are_judged():
+    """A keep-out that ends below the site's height still stands in the way straight up."""
+    corners = np.array([[-800.0, -750], [-600, -750], [-600, -550], [-800, -550]])
+    low = Airspace(keep_out=(Prism("school", corners, 0.0, 30.0),))
+    dem = rough_dem(1, relief=0.0)
+    with pytest.raises(RequestError, match="straight up from the ground there crosses 'school'") as caught:
+        gw.plan_route(request(dem, airspace=low))
+    assert [problem.field for problem in caught.value.problems] == ["start"]
+    moved = request(dem, airspace=low, start=Site("start", 0.0, -700.0), goal=Site("goal", -700.0, -650.0))
+    with pytest.raises(RequestError, match="school"):
+        gw.plan_route(moved)
+    assert gw.plan_route(replace(moved, finish="hold")).totals.distance > 0
+
+
+def test_a_return_through_a_hill_is_refused():
+    heights = np.zeros((41, 41))
+    heights[18:23, 15:26] = 200.0
+    dem = Dem.local(heights, -1000.0, 1000.0, 50.0)
+    sites = {"start": Site("start", 0.0, -700.0), "goal": Site("goal", 0.0, 700.0)}
+    asked = request(dem, finish="return", max_height=None, **sites)
+    with pytest.raises(RequestError, match="`return_height` to 225 m") as caught:
+        gw.plan_route(asked)
+    assert [problem.field for problem in caught.value.problems] == ["finish"]
+    assert gw.plan_route(replace(asked, return_height=225.0)).totals.clearance >= 25.0 - 1e-6
+
+
+@pytest.mark.parametrize(
+    ("graph", "field"),
+    [
+        (Uniform(0.05), "graph.uniform.spacing"),
+        (Uniform(50_000.0), "graph.uniform.spacing"),
+        (Roadmap(nodes=9_000_000), "graph.prm"),
+        (Roadmap(nodes=50_000, radius=3000.0), "graph.prm"),
+    ],
+)
+def test_a_graph_that_does_not_fit_is_refused_before_it_is_laid(graph, field):
+    with pytest.raises(RequestError) as caught:
+        gw.plan_route(request(rough_dem(1), graph=graph))
+    assert [problem.field for problem in caught.value.problems] == [field]
+
+
 def test_unknown_ground_under_a_site():
     dem = rough_dem(1)
     heights = dem.heights.copy()
@@ -202,7 +243,7 @@ def test_models_that_flatter_are_noted():
 
 def test_plan_has_a_tidy_repr():
     text = repr(gw.plan_route(request(rough_dem(1, relief=0.0), layers=(40.0,))))
-    assert text == "Plan('test', time: 2 waypoints, 1.95 km in 2 min 42 s, clearance 40.0 m)"
+    assert text == "Plan('test', time: 2 waypoints, 1.95 km in 2:42 min, clearance 40.0 m)"
 
 
 def test_public_names():

@@ -24,12 +24,12 @@ def read_request(mission: Path, airspeed: str | None) -> Request:
     """The request of a mission file, with the command line's airspeed."""
     from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.spec import read_mission
-    from gcs_windplan.spec.units import SPEED, read_quantity
+    from gcs_windplan.spec.values import AIRSPEED
 
     speed = None
     if airspeed is not None:
         try:
-            speed = read_quantity(airspeed, SPEED)
+            speed = AIRSPEED.read(airspeed)
         except ValueError as error:
             raise InputError(Problem(str(error), "--airspeed")) from None
     request = read_mission(mission)

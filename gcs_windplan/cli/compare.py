@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import typer
-
 from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, output_folder, read_request
 
 HELP = "Plan by every cost; print time, length, waypoints and search time side by side; write compare.png."
@@ -13,7 +11,7 @@ def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = No
     """Plan by each cost and print a table."""
     request = read_request(mission, airspeed)
 
-    from gcs_windplan.cli.plan import write
+    from gcs_windplan.cli.plan import report, write
     from gcs_windplan.cli.tables import print_comparison
     from gcs_windplan.cost import COST_NAMES, CostChoice
     from gcs_windplan.planner import plan_routes
@@ -24,6 +22,6 @@ def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = No
     plans = plan_routes(request, choices)
     picture = draw_map(plans)
     folder = output_folder(output, request)
+    written = write({"compare.png": picture}, folder)
     print_comparison(plans)
-    for path in write({"compare.png": picture}, folder):
-        typer.echo(f"wrote {path}")
+    report(written)

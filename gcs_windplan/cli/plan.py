@@ -12,6 +12,7 @@ from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, o
 
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
+    from gcs_windplan.request import Request
 
 HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
 
@@ -43,9 +44,11 @@ def plan(
     planned = plan_route(request)
     files = render(planned)
     folder = output_folder(output, request)
+    written = write(files, folder)
     print_legs(planned)
-    for path in write(files, folder):
-        typer.echo(f"wrote {path}")
+    report(written)
+    for path in stale(folder, request, files):
+        typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
 
 
 def render(planned: Plan) -> dict[str, str | bytes]:
@@ -70,9 +73,27 @@ def render(planned: Plan) -> dict[str, str | bytes]:
 
 
 def write(files: dict[str, str | bytes], folder: Path) -> list[Path]:
-    """Write files into a folder, each whole or not at all."""
+    """Write files into a folder, each whole or not at all; nothing if one of the names is taken by a folder."""
+    from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.formats import write_atomically
 
+    for name in files:
+        if (folder / name).is_dir():
+            raise InputError(
+                Problem("is a folder, and a file of this name is to be written: move it", file=folder / name)
+            )
     for name, content in files.items():
         write_atomically(folder / name, content)
     return [folder / name for name in files]
+
+
+def report(paths: list[Path]) -> None:
+    """Say what was written."""
+    for path in paths:
+        typer.echo(f"wrote {path}")
+
+
+def stale(folder: Path, request: Request, files: dict[str, str | bytes]) -> list[Path]:
+    """Mission files of an earlier plan in the same folder, which somebody might upload in place of this one's."""
+    names = (f"{file_stem(request)}.waypoints", f"{file_stem(request)}.plan")
+    return [folder / name for name in names if name not in files and (folder / name).exists()]

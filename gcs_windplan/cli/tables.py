@@ -9,16 +9,12 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from gcs_windplan.flight import clock
+
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
 _WIDTH = 100  # where the output is no terminal
-
-
-def clock(seconds: float) -> str:
-    """Minutes and seconds: 12:05."""
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes}:{rest:02d}"
 
 
 def _console() -> Console:
@@ -73,7 +69,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
     """Several plans of one request, a row each."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("least", justify="left", no_wrap=True)
-    for name in ("time min", "against best", "length km", "energy Wh", "points", "climb m", "AGL m",
+    for name in ("time min", "against best", "length km", "points", "climb m", "AGL m",
                  "expanded", "search s"):  # fmt: skip
         table.add_column(name, justify="right")
     best = min(plan.totals.seconds for plan in plans)
@@ -81,7 +77,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
         totals, effort = plan.totals, plan.effort
         table.add_row(
             plan.choice.name, clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %",
-            f"{totals.length / 1000:.2f}", "not known", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
+            f"{totals.length / 1000:.2f}", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
             f"{totals.clearance:.0f} - {totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
         )  # fmt: skip
     console = _console()

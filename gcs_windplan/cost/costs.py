@@ -1,9 +1,11 @@
 """The costs that a route is chosen by.
 
 In the search an edge costs what the kernels in `kernels/best_first.py` say. For legs of any length, as shaping makes
-them, each cost has a form that adds up along a polyline and equals the search's for ordinary edges: the angle, which
-the paper counts once an edge, becomes its mean along the leg times the leg's length in ordinary edges. Counted once a
-leg, the angle would call one long leg against the wind better than ten short ones down it.
+them, each cost has a form that adds up along a polyline. For distance and time that is the same measure. The paper's
+angle is counted once an edge, however long: a single leg against the wind would be "better" than ten short ones down
+it. So here a leg costs its mean angle times its length in ordinary edges; and hybrid, in which the paper's search
+counts distance only as what remains to the goal, adds the leg's length as a share of the straight line. By that
+measure shaping compares; it is not the number that A* adds up.
 """
 
 from __future__ import annotations

@@ -26,17 +26,16 @@ from gcs_windplan.formats.document import Node, parse_document
 from gcs_windplan.formats.reading import ReadMission, Repairs, home_or_none, read_text, without_mark
 from gcs_windplan.formats.writing import write_atomically
 from gcs_windplan.mission import (
-    Autopilot,
     Command,
     Frame,
     Home,
     Mission,
     MissionItem,
-    VehicleType,
     is_global,
     plain_frame,
     takes_place,
 )
+from gcs_windplan.vehicle import Autopilot, VehicleType
 
 _FIRMWARES: dict[Autopilot, int] = {
     "ardupilot": mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,

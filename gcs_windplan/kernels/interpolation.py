@@ -7,8 +7,12 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 
+# Every axis and column ascends strictly, so no divisor is 0. The same model as in `heightfield`: what Numba compiles for
+# one (min, max, empty) serves the other.
+_kernel = numba.njit(cache=True, error_model="numpy")
 
-@numba.njit(cache=True)
+
+@_kernel
 def interpolate_columns(
     u: FloatArray,
     v: FloatArray,
@@ -61,7 +65,7 @@ def interpolate_columns(
     return result
 
 
-@numba.njit(cache=True)
+@_kernel
 def _bracket(axis: FloatArray, value: float) -> tuple[int, float]:
     """Index below a value on an ascending axis and share of the way to the next, held at the ends."""
     low, high = 0, len(axis) - 1

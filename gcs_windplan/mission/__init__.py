@@ -1,6 +1,6 @@
 """Missions: items, commands and frames, and how a planned route becomes a mission."""
 
-from gcs_windplan.mission.build import AltitudeReference, Finish, RoutePoint, route_mission
+from gcs_windplan.mission.build import RoutePoint, route_mission
 from gcs_windplan.mission.commands import (
     Command,
     Frame,
@@ -11,19 +11,15 @@ from gcs_windplan.mission.commands import (
     scales_place,
     takes_place,
 )
-from gcs_windplan.mission.items import Autopilot, Home, Mission, MissionItem, VehicleType, degrees_e7
+from gcs_windplan.mission.items import Home, Mission, MissionItem, degrees_e7
 
 __all__ = [
-    "AltitudeReference",
-    "Autopilot",
     "Command",
-    "Finish",
     "Frame",
     "Home",
     "Mission",
     "MissionItem",
     "RoutePoint",
-    "VehicleType",
     "command_name",
     "degrees_e7",
     "frame_name",

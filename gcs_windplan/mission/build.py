@@ -10,17 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, TypeAlias
 
-from gcs_windplan.constants import WGS84_SEMI_MAJOR_AXIS
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Command, Frame
-from gcs_windplan.mission.items import Autopilot, Home, Mission, MissionItem, VehicleType
+from gcs_windplan.mission.items import Home, Mission, MissionItem
+from gcs_windplan.vehicle import Autopilot, VehicleType
 
-Finish = Literal["land", "return", "hold"]
-AltitudeReference = Literal["relative", "amsl"]
-Params = tuple[float, float, float, float]
+if TYPE_CHECKING:
+    from gcs_windplan.request import AltitudeReference, Finish
+
+Params: TypeAlias = tuple[float, float, float, float]
 
 _SPEED_STEP = 0.1  # [m/s] smaller changes are not commanded
 _SAME_PLACE = 1.0  # [m] half of ArduCopter's default waypoint radius (WPNAV_RADIUS)
@@ -35,7 +36,7 @@ class RoutePoint:
     """A point of a planned route; `altitude` AMSL [m].
 
     `ground_speed` is the planned horizontal ground speed [m/s] of the leg that ends here; None for the first
-    point.
+    point, and where none is to be commanded.
     """
 
     point: GeoPoint
@@ -122,22 +123,16 @@ class _ItemWriter:
 
 
 def _legs(writer: _ItemWriter, route: Sequence[RoutePoint], speed_changes: bool) -> Iterator[MissionItem]:
-    if _distance(writer.home.point, route[0].point) > _SAME_PLACE:
+    if _apart(writer.home.point, route[0].point) > _SAME_PLACE:
         yield writer.waypoint(route[0])
     commanded = -math.inf
-    for number, target in enumerate(route[1:], start=1):
-        if speed_changes:
-            speed = _leg_speed(target, number)
+    for target in route[1:]:
+        if speed_changes and target.ground_speed is not None:
+            speed = round(target.ground_speed, 2)
             if abs(speed - commanded) >= _SPEED_STEP - 1e-9:
                 commanded = speed
                 yield writer.without_place(Command.DO_CHANGE_SPEED, (_GROUND_SPEED, speed, _SAME_THROTTLE, 0.0))
         yield writer.waypoint(target)
-
-
-def _leg_speed(target: RoutePoint, number: int) -> float:
-    if target.ground_speed is None:
-        raise InputError(f"leg {number} has no ground speed: give one, or leave out the speed changes")
-    return round(target.ground_speed, 2)
 
 
 def _ending(
@@ -153,8 +148,7 @@ def _ending(
         raise InputError(f"finish {finish!r} is none of 'land', 'return', 'hold'")
 
 
-def _distance(a: GeoPoint, b: GeoPoint) -> float:
-    """Metres between two near places, on a sphere."""
-    north = math.radians(b.latitude_deg - a.latitude_deg)
-    east = math.radians(math.remainder(b.longitude_deg - a.longitude_deg, 360.0))
-    return WGS84_SEMI_MAJOR_AXIS * math.hypot(north, east * math.cos(math.radians(a.latitude_deg)))
+def _apart(a: GeoPoint, b: GeoPoint) -> float:
+    """Metres between two near places."""
+    east, north = LocalFrame(a).to_local(b.latitude_deg, b.longitude_deg)[0]
+    return math.hypot(east, north)

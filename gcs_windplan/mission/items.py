@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geodesy import GeoPoint
@@ -15,9 +14,7 @@ from gcs_windplan.mission.commands import (
     scales_place,
     takes_place,
 )
-
-Autopilot = Literal["ardupilot", "px4"]
-VehicleType = Literal["multicopter", "fixed-wing"]
+from gcs_windplan.vehicle import Autopilot, VehicleType
 
 
 def degrees_e7(degrees: float) -> int:

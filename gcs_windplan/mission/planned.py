@@ -10,6 +10,7 @@ from gcs_windplan.mission.items import Home, Mission
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
+_SLOWEST = 0.01  # [m/s] no slower ground speed is commanded
 _LEVEL = 1.0  # [m] a leg shorter than this in plan is a climb or descent on the spot
 
 
@@ -19,7 +20,10 @@ def mission_of(plan: Plan) -> Mission:
     A leg straight up or down commands no ground speed.
     """
     first, last = plan.waypoints[0], plan.waypoints[-1]
-    speeds = [None, *(leg.ground_speed if leg.distance >= _LEVEL else None for leg in plan.legs)]
+    speeds = [
+        None,
+        *(leg.ground_speed if leg.distance >= _LEVEL and leg.ground_speed >= _SLOWEST else None for leg in plan.legs),
+    ]
     route = [
         RoutePoint(waypoint.point, waypoint.altitude, speed)
         for waypoint, speed in zip(plan.waypoints, speeds, strict=True)

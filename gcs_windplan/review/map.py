@@ -15,11 +15,15 @@ from matplotlib.patches import Polygon
 from matplotlib.patheffects import Normal, Stroke
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.flight import clock
 from gcs_windplan.planner import Plan
 from gcs_windplan.review.png import png_bytes
+from gcs_windplan.siting import choose_area
 from gcs_windplan.terrain import Extent
+from gcs_windplan.veil import Prism
 
 _PIXELS = 500  # of relief along the longer side
+_HEAD, _FOOT = 0.85, 1.05  # [inch] above and below the map
 _SIDE = 7.4  # [inch] the longer side of the map itself
 _ARROWS = 18  # along the longer side
 _LABEL_ROOM = 0.025  # of the route's extent, between two numbers
@@ -59,12 +63,12 @@ def _sheet(extent: Extent) -> tuple[Figure, Any, Any]:
     depth = (extent.north - extent.south) / (extent.east - extent.west)
     width = _SIDE / max(1.0, depth)
     height = width * depth
-    whole = np.array([width + 1.9, height + 1.3])
+    whole = np.array([max(width, 6.0) + 1.9, height + _HEAD + _FOOT])
     figure = Figure(figsize=(whole[0], whole[1]))
     FigureCanvasAgg(figure)
-    axes = figure.add_axes((0.8 / whole[0], 0.55 / whole[1], width / whole[0], height / whole[1]))
+    axes = figure.add_axes((0.8 / whole[0], _FOOT / whole[1], width / whole[0], height / whole[1]))
     beside = figure.add_axes(
-        ((0.8 + width + 0.15) / whole[0], (0.55 + 0.12 * height) / whole[1], 0.2 / whole[0], 0.76 * height / whole[1])
+        ((0.8 + width + 0.15) / whole[0], (_FOOT + 0.12 * height) / whole[1], 0.2 / whole[0], 0.76 * height / whole[1])
     )
     return figure, axes, beside
 
@@ -124,6 +128,7 @@ def _draw_areas(axes: Any, plan: Plan) -> None:
     for prism in plan.request.airspace.keep_out:
         patch = Polygon(prism.corners / 1000, closed=True, fc=(0.8, 0.2, 0, 0.18), ec="#b22200", hatch="///", lw=1.2)
         axes.add_patch(patch)
+        _name_area(axes, prism)
     if plan.request.obstacles is not None:
         seen_from_above = plan.request.obstacles.triangles[:, :, :2] / 1000
         axes.add_collection(PolyCollection(list(seen_from_above), facecolors="#5b3a5e", edgecolors="#2d1d2f", lw=0.4))
@@ -132,17 +137,35 @@ def _draw_areas(axes: Any, plan: Plan) -> None:
         axes.add_patch(patch)
 
 
+def _name_area(axes: Any, prism: Prism) -> None:
+    """A keep-out's name and heights in its middle, as far as that lies on the map."""
+    heights = [f"from {prism.floor:.0f} m"] if np.isfinite(prism.floor) else []
+    heights += [f"up to {prism.ceiling:.0f} m"] if np.isfinite(prism.ceiling) else []
+    x, y = (prism.corners.min(axis=0) + prism.corners.max(axis=0)) / 2000
+    axes.text(
+        x, y, "\n".join([prism.name, " ".join([*heights, "AMSL"])] if heights else [prism.name]), fontsize=8.5,
+        ha="center", va="center", color="#7a1200", zorder=7, clip_on=True,
+        path_effects=[Stroke(linewidth=2.4, foreground="white"), Normal()],
+    )  # fmt: skip
+
+
 def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     """Arrows towards where the wind blows, at the route's mean height above ground."""
+    planned = choose_area(plan.request, _line(plan))  # the wind need not be known beyond it
     inset = 0.5 / _ARROWS * max(extent.east - extent.west, extent.north - extent.south)
-    inner = Extent(extent.west + inset, extent.south + inset, extent.east - inset, extent.north - inset)
+    inner = Extent(
+        max(extent.west + inset, planned.west),
+        max(extent.south + inset, planned.south),
+        min(extent.east - inset, planned.east),
+        min(extent.north - inset, planned.north),
+    )
     x, y = _grid(inner, _ARROWS)
     places = np.column_stack([x.ravel(), y.ravel()])
     ground = plan.request.terrain.heights_at(places)
     above = float(np.mean([w.above_ground for w in plan.waypoints]))
-    known = np.isfinite(ground)
-    points = np.column_stack([places, ground + above])[known]
+    points = np.column_stack([places, ground + above])[np.isfinite(ground)]
     wind = plan.request.wind.at(points)
+    points, wind = points[np.isfinite(wind[:, 0])], wind[np.isfinite(wind[:, 0])]
     speed = np.hypot(wind[:, 0], wind[:, 1])
     strongest = float(speed.max(initial=0.0))
     if strongest == 0:
@@ -186,13 +209,17 @@ def _draw_side_by_side(axes: Any, plans: Sequence[Plan]) -> None:
     """Several routes, told apart by colour and dash."""
     for i, plan in enumerate(plans):
         line = _line(plan) / 1000
-        minutes, seconds = divmod(round(plan.totals.seconds), 60)
         axes.plot(
             line[:, 0], line[:, 1], color=_ROUTES[i % 4], ls=_DASHES[i % 4], lw=2.4, zorder=5 + i,
-            label=f"{plan.choice}: {minutes}:{seconds:02d} min",
+            label=f"{plan.choice}: {clock(plan.totals.seconds)} min",
             path_effects=[Stroke(linewidth=4.4, foreground="white"), Normal()],
         )  # fmt: skip
-    axes.legend(loc="best", framealpha=0.9, fontsize=9)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, _below(axes)), ncols=2, frameon=False, fontsize=9)
+
+
+def _below(axes: Any) -> float:
+    """Where a legend below the axis label begins, as a share of the axes' height."""
+    return -0.48 * float(axes.figure.dpi) / float(axes.bbox.height)
 
 
 def _draw_sites(axes: Any, plan: Plan) -> None:
@@ -215,12 +242,12 @@ def _label(axes: Any, x: float, y: float, text: str, size: float, offset: tuple[
 def _dress(axes: Any, plans: Sequence[Plan], extent: Extent) -> None:
     """Axes, title and limits."""
     plan = plans[0]
+    axes.set_facecolor("#d9d9d9")  # where the ground is not known
     axes.set_xlim(extent.west / 1000, extent.east / 1000)
     axes.set_ylim(extent.south / 1000, extent.north / 1000)
     axes.set_xlabel("east of the frame's origin [km]")
     axes.set_ylabel("north [km]")
     totals = plan.totals
-    minutes, seconds = divmod(round(totals.seconds), 60)
-    what = f"least {plan.choice}, {totals.length / 1000:.2f} km in {minutes}:{seconds:02d} min"
+    what = f"least {plan.choice}, {totals.length / 1000:.2f} km in {clock(totals.seconds)} min"
     head = what if len(plans) == 1 else "routes of least " + ", ".join(p.choice.name for p in plans)
     axes.set_title(f"{plan.request.name}: {head}", fontsize=12, loc="left", pad=24)

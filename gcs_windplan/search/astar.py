@@ -13,11 +13,20 @@ from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import edge_between, search_csr, search_grid
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
+from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
 from gcs_windplan.wind.field import WindField
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
 _MOST_EXPLAINED = 200_000  # reached nodes whose legs are judged again to explain a failure
 _CUT_BY_WIND = "wind (too strong for the vehicle, or not known that high)"
+_ADVICE = {
+    BREACHES[TOO_LOW]: "Lower the clearance, add higher layers or a finer graph, or widen graph.margin.",
+    BREACHES[UNKNOWN_GROUND]: "Add terrain around the sites, or move them.",
+    BREACHES[TOO_HIGH]: "Raise max_height, lower the clearance, refine the graph, or widen graph.margin.",
+    BREACHES[OBSTACLE]: "Move the site, lower the obstacle's margin, refine the graph or widen graph.margin.",
+    BREACHES[AIRSPACE]: "Move the site, correct the areas, or widen graph.margin.",
+    _CUT_BY_WIND: "More airspeed, another departure, or other layers.",
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,11 +148,14 @@ def no_route(veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goa
             led = np.full(len(around), -1)
     inner = np.isin(led, reached)
     cuts = _count(flags[~inner] if not inner.all() else flags)
-    listed = "; ".join(f"{name}: {count}" for name, count in cuts.items())
+    if not cuts:
+        text = "no node lies near enough: use a finer graph, more nodes or a larger radius"
+        return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
+    listed = "; ".join(f"{name}: {count} legs" for name, count in cuts.items())
+    advice = _ADVICE[next(iter(cuts))]
     return NoRouteError(
-        f"no route: of {veil.size} nodes the search reached {len(reached)}, and the legs that would lead on are cut by"
-        f" {listed or 'nothing that a leg breaks: no node lies near the site'}. Lower the clearance, raise max_height,"
-        " widen graph.margin, refine graph spacing, or move the site.",
+        f"no route: the search reached {len(reached)} of {veil.size} nodes, and what leads on is cut by {listed}."
+        f" {advice}",
         cuts,
     )
 

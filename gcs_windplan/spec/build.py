@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,6 +27,8 @@ from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.veil import Airspace, Prism
 
 _T = TypeVar("_T")
+_FARTHEST = 300_000.0  # [m] the local frame's distances are good to some metres over it
+_NEAREST_POLE = 89.0  # [deg]
 _SPARE = 500.0  # [m] of terrain read beyond the veil, so that sites just outside of it get their own message
 
 
@@ -39,6 +42,7 @@ def read_mission(path: Path | str) -> Request:
     model = document.model
     frame = _frame(model)
     sites = _sites(model, frame)
+    _refuse_far(document, sites)
     area = _area(model, sites)
     terrain = _placed(document, "terrain", lambda: build_terrain(document, frame, area))
     problems: list[Problem] = []
@@ -71,6 +75,7 @@ def read_mission(path: Path | str) -> Request:
         collision_test=model.collision_test,
         departure=model.departure,
         finish=model.finish,
+        return_height=model.return_height,
         export=Export(**model.export.model_dump()),
         locate=_locator(document),
     )
@@ -141,6 +146,24 @@ def _sites(model: MissionModel, frame: LocalFrame) -> list[Site]:
     return [Site(name, *place_of(site, frame), site.height, site.altitude) for name, site in named]
 
 
+def _refuse_far(document: MissionDocument, sites: list[Site]) -> None:
+    """Raise for sites too near to a pole or too far from the start for a flat frame."""
+    problems = []
+    models = (document.model.start, *document.model.via, document.model.goal)
+    for site, model in zip(sites, models, strict=True):
+        if model.latitude is not None and abs(model.latitude) > _NEAREST_POLE:
+            problems.append(document.problem(site.field, f"lies within {90 - _NEAREST_POLE:g}° of a pole: move it"))
+        distance = float(np.hypot(site.east - sites[0].east, site.north - sites[0].north))
+        if distance > _FARTHEST:
+            text = f"lies {distance / 1000:.0f} km from the start; a mission spans at most {_FARTHEST / 1000:.0f} km"
+            problems.append(document.problem(site.field, text))
+    margin = document.model.graph.margin
+    if margin is not None and margin > _FARTHEST:
+        problems.append(document.problem("graph.margin", f"is more than {_FARTHEST / 1000:.0f} km: lower it"))
+    if problems:
+        raise MissionFileError(problems)
+
+
 def _area(model: MissionModel, sites: list[Site]) -> Extent:
     """The box that terrain and wind are read for: the sites with the veil's margin, and something to spare."""
     places = np.array([(site.east, site.north) for site in sites])
@@ -160,18 +183,20 @@ def _prisms(
     """Keep-out or keep-in areas in the local frame; those that are no simple polygon become problems."""
     prisms = []
     for i, area in enumerate(areas):
-        floor = -np.inf if area.floor is None else area.floor
-        ceiling = np.inf if area.ceiling is None else area.ceiling
-        corners = _corners(area, frame)
         prism = _collected(
-            document,
-            f"{field}.{i}.polygon",
-            problems,
-            lambda name=area.name, c=corners, f=floor, t=ceiling: Prism(name, c, f, t),  # type: ignore[misc]
+            document, f"{field}.{i}.polygon", problems, partial(_prism, area, frame, field == "keep_out")
         )
         if prism is not None:
             prisms.append(prism)
     return tuple(prisms)
+
+
+def _prism(area: AreaModel, frame: LocalFrame, keep_out: bool) -> Prism:
+    """An area with its margin: a keep-out grows by it, a keep-in shrinks."""
+    floor = -np.inf if area.floor is None else area.floor
+    ceiling = np.inf if area.ceiling is None else area.ceiling
+    prism = Prism(area.name, _corners(area, frame), floor, ceiling)
+    return prism.widened(area.margin if keep_out else -area.margin)
 
 
 def _corners(area: AreaModel, frame: LocalFrame) -> FloatArray:

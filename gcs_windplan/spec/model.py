@@ -169,6 +169,7 @@ class AreaModel(Section):
     polygon: PolygonModel = Field(description="its corners", examples=["[[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]"])
     floor: Length | None = Field(default=None, description="above mean sea level; default: the ground")
     ceiling: Length | None = Field(default=None, description="above mean sea level, above the floor; default: none")
+    margin: Height = Field(default=5.0, description="distance to keep from its border in plan")
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
@@ -219,6 +220,9 @@ class MissionModel(Section):
     keep_in: tuple[AreaModel, ...] = Field(default=(), description="areas no leg leaves")
     departure: UtcTime | None = Field(default=None, description="the time of take-off; kept in UTC")
     finish: Literal["land", "return", "hold"] = Field(default="land", description="what to do at the goal")
+    return_height: Height = Field(
+        default=15.0, description="above home, what the vehicle's return altitude is set to; only for `finish: return`"
+    )
     export: ExportModel = Field(default=ExportModel(), description="what is written")
 
     @classmethod

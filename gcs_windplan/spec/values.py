@@ -212,9 +212,11 @@ class OnlyTrue(Checked):
         return {"const": True}
 
 
-CLEARANCE: Final = Measure(LENGTH, above=0)
-HEIGHT: Final = Measure(LENGTH, at_least=0)
-SIGNED_LENGTH: Final = Measure(LENGTH)
+_FARTHEST: Final = 300_000.0  # [m] no length of a mission is longer, no mission spans more
+CLEARANCE: Final = Measure(LENGTH, above=0, at_most=_FARTHEST)
+HEIGHT: Final = Measure(LENGTH, at_least=0, at_most=_FARTHEST)
+SIGNED_LENGTH: Final = Measure(LENGTH, at_least=-_FARTHEST, at_most=_FARTHEST)
+AIRSPEED: Final = Measure(SPEED, at_least=0.1, at_most=150)
 LATITUDE: Final = Measure(ANGLE, at_least=-90, at_most=90)
 LONGITUDE: Final = Measure(ANGLE, at_least=-180, at_most=180)
 WEIGHT: Final = Measure(NUMBER, at_least=0)
@@ -228,7 +230,7 @@ Height = Annotated[float, HEIGHT]
 PositiveLength = Annotated[float, CLEARANCE]
 Speed = Annotated[float, Measure(SPEED, at_least=0)]
 PositiveSpeed = Annotated[float, Measure(SPEED, above=0)]
-Airspeed = Annotated[float, Measure(SPEED, above=0, at_most=150)]
+Airspeed = Annotated[float, AIRSPEED]
 Latitude = Annotated[float, LATITUDE]
 Longitude = Annotated[float, LONGITUDE]
 Direction = Annotated[float, Measure(ANGLE, at_least=0, at_most=360)]

@@ -37,6 +37,17 @@ class Prism:
     def __str__(self) -> str:
         return self.name
 
+    def widened(self, margin: float) -> Prism:
+        """The prism with its border moved outwards by `margin` [m], inwards where that is negative."""
+        if margin == 0:
+            return self
+        from shapely.geometry import Polygon
+
+        moved = Polygon(self.corners).buffer(margin, join_style="mitre")
+        if moved.is_empty or moved.geom_type != "Polygon":
+            raise InputError(f"area '{self.name}' is too narrow for a margin of {abs(margin):g} m: lower it")
+        return Prism(self.name, np.array(moved.exterior.coords)[:-1, :2], self.floor, self.ceiling)
+
 
 @dataclass(frozen=True, slots=True)
 class Airspace:

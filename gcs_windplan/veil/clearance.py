@@ -40,8 +40,8 @@ class Clearance:
     `minimum` is the smallest, `maximum` the largest vertical distance to the ground [m] anywhere along the leg;
     obstacles keep their own margins. All tests are exact: nothing is sampled.
 
-    With the `test` `paper` a leg is too low only where the paper's sampled area test (8) finds it to touch a triangle of
-    the ground; `minimum` then only lifts nodes above obstacles. It lets legs through thin ridges: for comparison.
+    With the `test` `paper` a leg is too low only where the paper's sampled area test (8) finds it to touch a triangle
+    of the ground; `minimum` then only lifts nodes above obstacles. It lets legs through thin ridges: for comparison.
     """
 
     terrain: Terrain

@@ -32,8 +32,8 @@ def test_every_field_stands_in_the_reference() -> None:
     for section in sections():
         for name in known_fields(section):
             assert f"| `{name}` |" in reference
-    assert "| `airspeed` | speed [m/s], above 0 and at most 150 | required | cruise speed" in reference
-    assert "| `clearance` | length [m], above 0 | `30 m` |" in reference
+    assert "| `airspeed` | speed [m/s], between 0.1 and 150 | required | cruise speed" in reference
+    assert "| `clearance` | length [m], above 0 and at most 300000 | `30 m` |" in reference
     assert "| `from` | angle [deg], between 0 and 360 | required |" in reference
     assert "## start, goal, via[]" in reference
     assert "- speed: m/s, km/h, kt, mph, ft/s, ft/min" in reference
@@ -50,7 +50,7 @@ def test_the_json_schema_allows_units_and_short_forms() -> None:
     json.dumps(schema, allow_nan=False)
     kinds = schema["$defs"]
     number, text = kinds["VehicleModel"]["properties"]["airspeed"]["anyOf"]
-    assert number == {"type": "number", "exclusiveMinimum": 0, "maximum": 150}
+    assert number == {"type": "number", "minimum": 0.1, "maximum": 150}
     assert re.search(text["pattern"], "20 kt")
     assert not re.search(text["pattern"], "20 m")
     assert kinds["CostModel"]["anyOf"][0]["enum"] == ["distance", "angle", "hybrid", "time"]

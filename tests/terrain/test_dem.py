@@ -183,6 +183,13 @@ def test_long_legs_over_a_curved_grid_follow_the_exact_chain(latitude):
         assert high - slack - step <= over.max() <= high + slack
 
 
+@pytest.mark.parametrize("far", [1e7, 1e18, 1e300, np.inf])
+def test_a_leg_that_ends_far_beyond_a_curved_grid_is_unknown(far):
+    dem, _, _ = curved_dem(47.0, 0.5)
+    assert np.isnan(single(dem, [0, 0, 600], [far, 0, 600])).all()
+    assert np.isnan(single(dem, [0, -far, 600], [0, 0, 600])).all()
+
+
 def test_the_map_follows_the_exact_chain_to_a_centimetre():
     dem, grid, frame = curved_dem(60.0, 1.0)
     box, rng = dem.extent, np.random.default_rng(3)

@@ -73,3 +73,17 @@ def test_vertical_leg_and_point():
 def test_bad_polygons(corners, message):
     with pytest.raises(InputError, match=message):
         Prism("bad", np.array(corners, dtype=float))
+
+
+@pytest.mark.parametrize("margin", [5.0, -5.0])
+def test_margins_move_the_border(margin):
+    square = Prism("school", np.array([[0, 0], [100, 0], [100, 100], [0, 100]], dtype=float), 0, 50)
+    moved = square.widened(margin)
+    assert shapely.Polygon(moved.corners).area == pytest.approx((100 + 2 * margin) ** 2)
+    assert (moved.floor, moved.ceiling) == (0, 50)
+
+
+def test_a_margin_that_eats_the_area_is_an_error():
+    square = Prism("garden", np.array([[0, 0], [8, 0], [8, 8], [0, 8]], dtype=float))
+    with pytest.raises(InputError, match="too narrow"):
+        square.widened(-5.0)
