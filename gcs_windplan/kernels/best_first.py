@@ -33,7 +33,7 @@ BALL_E, BALL_N, BALL_RADIUS, BALL_UP, BALL_DOWN = (
 SETTINGS = 12
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def edge_cost(
     performance: FloatArray, setting: FloatArray,
     level: float, east: float, north: float, climb: float,
@@ -61,7 +61,7 @@ def edge_cost(
     return weight * angle / math.pi
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def edge_between(
     performance: FloatArray, setting: FloatArray,
     de: float, dn: float, dz: float,
@@ -77,7 +77,7 @@ def edge_between(
     return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, z: float) -> float:
     """The estimate from a place to the goal; for distance and time a consistent lower bound.
 
@@ -121,7 +121,7 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
     return seconds
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
     """Put a node into the 4-ary heap of `size` entries; there must be room for one more."""
     hole = size
@@ -136,7 +136,7 @@ def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -
     nodes[hole] = node
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     """Drop the first of `size` entries; the last one sinks from the top."""
     last = size - 1
@@ -159,7 +159,7 @@ def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     nodes[hole] = node
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, IntArray]:
     """The heap's arrays, twice as long if `needed` entries do not fit."""
     if needed <= keys.size:
@@ -172,7 +172,7 @@ def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, I
     return longer_keys, longer_nodes
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
@@ -295,7 +295,7 @@ def search_grid(
     return path, best, expanded, reached
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def search_csr(
     first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
     performance: FloatArray, setting: FloatArray, start: int, goal: int,

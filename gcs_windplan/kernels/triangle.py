@@ -16,7 +16,7 @@ from gcs_windplan.arrays import FloatArray, IntArray
 TRIANGLE, PAPER = 0, 1
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def ground_speed(model: float, airspeed: float, along: float, cross: float) -> float:
     """Speed along the track [m/s] with the wind's components along and across it; 0 where it cannot be flown.
 
@@ -33,7 +33,7 @@ def ground_speed(model: float, airspeed: float, along: float, cross: float) -> f
     return max(0.0, math.sqrt(rest) + along)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def leg_seconds(
     performance: FloatArray,
     level: float, east: float, north: float, climb: float,
@@ -73,7 +73,7 @@ def leg_seconds(
     return vertical
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float) -> float:
     """The angle between a direction and the wind [rad], 0..π: equation (10) with atan2 for the printed arctan.
 
@@ -89,7 +89,7 @@ def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: floa
     return math.atan2(math.sqrt(ce * ce + cn * cn + cu * cu), dot)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def integrate_legs(
     performance: FloatArray, vectors: FloatArray, first: IntArray, weights: FloatArray, winds: FloatArray
 ) -> FloatArray:
@@ -118,7 +118,7 @@ def integrate_legs(
     return result
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
     """The mean angle [rad] between each direction (n, 3) and its share of the winds (n k, 3), shape (n,)."""
     n = vectors.shape[0]
@@ -131,7 +131,7 @@ def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
     return means
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def enclosing_disc(winds: FloatArray) -> tuple[float, float, float]:
     """A disc around all winds (n, 2 or more): its centre's components and its radius [m/s]; winds that are NaN are
     left out.
@@ -161,7 +161,7 @@ def enclosing_disc(winds: FloatArray) -> tuple[float, float, float]:
     return east, north, math.hypot(fx - east, fy - north)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _farthest(winds: FloatArray, east: float, north: float) -> tuple[float, float]:
     """The wind that differs most from a given one."""
     best, fx, fy = -1.0, east, north
