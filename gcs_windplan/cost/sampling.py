@@ -21,7 +21,7 @@ from gcs_windplan.wind.field import WindField
 
 _MOST_PANELS: Final = 512  # of a leg, before any is halved
 _HALVINGS: Final = 10
-_CALM: Final = 0.02  # of the airspeed: a change of wind over half a panel that needs no halving
+_CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
 _SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
@@ -50,7 +50,7 @@ def integrate(
     """Integrate along straight legs (n, 3) in the wind as it is `seconds` after departure."""
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
-    panels = np.clip(np.ceil(lengths / wind.resolution), 1, _MOST_PANELS).astype(np.int64)
+    panels = np.clip(np.ceil(lengths / (2 * wind.resolution)), 1, _MOST_PANELS).astype(np.int64)  # two samples each
 
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
         return wind.at(starts[leg] + share[:, None] * vectors[leg], seconds)

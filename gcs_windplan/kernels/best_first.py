@@ -177,14 +177,15 @@ def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
     performance: FloatArray, setting: FloatArray,
-    seeds: IntArray, seed_costs: FloatArray, targets: IntArray, target_costs: FloatArray,
+    seeds: IntArray, seed_costs: FloatArray, seed_keys: FloatArray, targets: IntArray, target_costs: FloatArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a grid of layers, rows (to the north) and columns (to the east).
 
     `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers,
     rows, columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step
     k < m is an edge; `winds` (nodes, 3) [m/s]; `estimates` (nodes,) in place of `remaining`, or empty. The search
-    begins at `seeds` with their costs and ends with the cheapest of `targets` plus its cost.
+    begins at `seeds` with their costs and keys (cost and estimate), and ends with the cheapest of `targets` plus its
+    cost.
 
     Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
     every node reached (infinite elsewhere).
@@ -215,19 +216,7 @@ def search_grid(
         node = seeds[i]
         if seed_costs[i] < reached[node]:
             reached[node] = seed_costs[i]
-            row, column = (node // columns) % rows, node % columns
-            if estimates.size > 0:
-                ahead = estimates[node]
-            else:
-                ahead = remaining(
-                    performance,
-                    setting,
-                    corner[0] + column * spacing,
-                    corner[1] + row * spacing,
-                    heights[node],
-                )
-            keys, nodes = _room(keys, nodes, size + 1)
-            _push(keys, nodes, size, seed_costs[i] + ahead, node)
+            _push(keys, nodes, size, seed_keys[i], node)
             size += 1
     best, arrival, expanded = math.inf, -1, 0
     while size > 0:

@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
 from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.kernels.best_first import edge_between, search_csr, search_grid
+from gcs_windplan.kernels.best_first import edge_between, remaining, search_csr, search_grid
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
 from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
 from gcs_windplan.wind.field import WindField
@@ -80,10 +80,15 @@ def _search_grid(
     setting = cost.setting(goal, np.concatenate([windy.winds, air]))
     seeds, seed_costs = _joins(windy, cost, setting, start, air[0], outward=True)
     targets, target_costs = _joins(windy, cost, setting, goal, air[1], outward=False)
+    performance, estimates = cost.performance(), cost.estimates(windy.points, goal)
+    if len(estimates):
+        ahead = estimates[seeds]
+    else:
+        ahead = np.array([remaining(performance, setting, *windy.points[seed]) for seed in seeds], dtype=np.float64)
     nodes, total, expanded, reached = search_grid(
         np.array(veil.heights.shape, dtype=np.int64), veil.corner, veil.spacing, veil.steps,
-        veil.heights.ravel(), veil.legal, windy.winds, cost.estimates(windy.points, goal),
-        cost.performance(), setting, seeds, seed_costs, targets, target_costs,
+        veil.heights.ravel(), veil.legal, windy.winds, estimates,
+        performance, setting, seeds, seed_costs, seed_costs + ahead, targets, target_costs,
     )  # fmt: skip
     direct = math.inf
     if np.linalg.norm(goal - start) <= _JOIN * veil.spacing and not veil.clearance.breaches(ends[:1], ends[1:])[0]:

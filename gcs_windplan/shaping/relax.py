@@ -19,16 +19,19 @@ from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.cost import LegCost
 from gcs_windplan.veil import Clearance
 
-_SWEEPS: Final = 60  # on one polyline
+_SWEEPS: Final = 120  # on one polyline, every other vertex at a time
+_LONG: Final = 64  # vertices, from which on half as many must do: halving and thinning follow
 _FIRST_STEP: Final = 0.25  # of the mean length of the two legs at a vertex
 _TOUCH: Final = 0.05  # the first step where vertices are nearly at rest
 _LAST_STEP: Final = 1.5e-3  # of the same, where a vertex comes to rest
-_WORTH: Final = 2e-4  # of the cost, that halving all legs must gain
+_WORTH: Final = 1.5e-4  # of the cost, that halving all legs must gain
 _MOST_VERTICES: Final = 129
 _GROW, _SHRINK = 1.5, 0.6
 _GOLDEN: Final = 2.399963  # [rad] the golden angle: no direction comes twice
 _RISE: Final = 0.1  # of a level step: heights differ less than places do
-_SPARE: Final = 8e-4  # of the cost, that fewer waypoints may take
+_LOOKS: Final = 16  # sweeps between two looks at the cost
+_REST: Final = 5e-6  # of the cost: gaining less between two looks, vertices are at rest
+_SPARE: Final = 6e-4  # of the cost, that fewer waypoints may take
 
 
 def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float = _SPARE) -> FloatArray:
@@ -98,7 +101,12 @@ def _settle(
     legs = cost.of_legs(points[:-1], points[1:])
     n = len(points)
     size = np.full(n, first_step)
-    for sweep in range(2 * _SWEEPS):
+    total = float(legs.sum())
+    for sweep in range(_SWEEPS if n < _LONG else _SWEEPS // 2):
+        if sweep % _LOOKS == 0 and sweep > 0:
+            before, total = total, float(legs.sum())
+            if before - total < _REST * total:
+                break
         moving = np.arange(1 + sweep % 2, n - 1, 2)
         moving = moving[size[moving] >= _LAST_STEP]
         if len(moving) == 0:
