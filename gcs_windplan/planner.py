@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -28,6 +28,7 @@ from gcs_windplan.siting import (
     stand_sites,
     windless_sites,
 )
+from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
 
 
@@ -107,14 +108,17 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     if problems:
         raise RequestError([request.locate(problem) for problem in problems])
     begin = time.perf_counter()
-    windy = blow(_lay_veil(request, rules, layers, sites), request.wind)
+    area = choose_area(request, sites)
+    rules = replace(rules, area=area)
+    windy = blow(_lay_veil(request, rules, layers, sites, area), request.wind)
     veil_seconds = time.perf_counter() - begin
     return [_plan(request, choice, rules, windy, sites, veil_seconds) for choice in choices]
 
 
-def _lay_veil(request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray) -> GridVeil | PrmVeil:
+def _lay_veil(
+    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent
+) -> GridVeil | PrmVeil:
     """The veil that the request asks for."""
-    area = choose_area(request, sites)
     refuse_unwieldy(request, area, layers)
     graph = request.graph
     if isinstance(graph, Roadmap):

@@ -78,13 +78,11 @@ def refuse_unwieldy(request: Request, area: Extent, layers: Sequence[float]) -> 
     spacing = choose_spacing(request, area)
     nodes = (width / spacing + 1) * (depth / spacing + 1) * len(layers)
     if nodes > _MOST_NODES:
-        text = (
-            f"{spacing:g} m over {width / 1000:.1f} x {depth / 1000:.1f} km in {len(layers)} layers makes {nodes:.2g}"
-        )
+        text = f"{spacing:g} m over {width:.0f} x {depth:.0f} m in {len(layers)} layers makes {nodes:.2g}"
         coarser = spacing * math.sqrt(nodes / _MOST_NODES)
         _refuse(request, f"{text} nodes, more than {_MOST_NODES:.2g}: {coarser:.2g} m or more", "graph.uniform.spacing")
     if spacing > max(width, depth):
-        text = f"{spacing:g} m is more than the area of {width / 1000:.2f} x {depth / 1000:.2f} km: refine it"
+        text = f"{spacing:g} m is more than the area of {width:.0f} x {depth:.0f} m: refine it"
         _refuse(request, f"{text}, or widen graph.margin", "graph.uniform.spacing")
 
 
@@ -130,15 +128,7 @@ def _return_blocked(request: Request, points: FloatArray, rules: Clearance) -> l
     heights = rules.terrain.leg_heights(away[None], back[None])[0]
     problems = []
     if not heights[0] >= request.clearance - _SLACK:
-        needed = height - home + request.clearance - heights[0]
-        text = (
-            f"the straight flight home at {height:.0f} m above sea level comes within {heights[0]:.1f} m of the ground"
-        )
-        if math.isnan(heights[0]):
-            text, needed = "the straight flight home leads over unknown ground", math.nan
-        advice = "land at the goal" + ("" if math.isnan(needed) else f", or set the vehicle's return altitude and"
-                                       f" `return_height` to {math.ceil(needed)} m")  # fmt: skip
-        problems.append(Problem(f"{text}: {advice}", "finish"))
+        problems.append(Problem(_low_return(height, home, heights[0], request.clearance), "finish"))
     if broken := rules.airspace.broken_by(away, back):
         problems.append(Problem(f"the straight flight home breaks '{broken[0]}': land at the goal instead", "finish"))
     obstacles = rules.obstacles
@@ -187,6 +177,18 @@ def _misplaced(site: Site, point: FloatArray, ground: float, request: Request, r
     if rules.obstacles is not None and rules.obstacles.leg_margins(point[None], point[None])[0] < -_SLACK:
         return "lies inside an obstacle or closer to it than its margin: move or raise it"
     return None
+
+
+def _low_return(height: float, home: float, lowest: float, clearance: float) -> str:
+    """What to say of a flight home whose smallest height over the ground is `lowest` [m]."""
+    if math.isnan(lowest):
+        return "the straight flight home leads over unknown ground: land at the goal"
+    passes = f"within {lowest:.0f} m of" if lowest >= 0 else f"{-lowest:.0f} m below"
+    needed = math.ceil(height - home + clearance - lowest)
+    return (
+        f"the straight flight home at {height:.0f} m above sea level passes {passes} the ground: land at the goal, or"
+        f" set the vehicle's return altitude and `return_height` to {needed} m"
+    )
 
 
 def windless_sites(request: Request, points: FloatArray) -> list[Problem]:

@@ -231,6 +231,20 @@ def test_speeds_that_cannot_be_flown(field, value):
         replace(Vehicle(12.0), **{field: value})
 
 
+def test_waypoints_stay_inside_the_area():
+    """Beyond it the wind need not be known: here it is not, and a tail wind just outside beckons."""
+
+    class Corridor(WavyWind):
+        def at(self, points, seconds=0.0):
+            assert (np.abs(points[:, 0]) <= 100.0 + 1e-6).all(), "asked for wind outside of the area"
+            return np.column_stack([np.zeros(len(points)), points[:, 0] / 20.0, np.zeros(len(points))])
+
+    dem = rough_dem(1, relief=0.0)
+    sites = {"start": Site("start", 0.0, -700.0), "goal": Site("goal", 0.0, 700.0)}
+    plan = gw.plan_route(request(dem, wind=Corridor(1), margin=100.0, layers=(40.0,), graph=Uniform(50.0), **sites))
+    assert max(w.east for w in plan.waypoints) == pytest.approx(100.0, abs=5.0)
+
+
 def test_models_that_flatter_are_noted():
     dem = rough_dem(1, relief=0.0)
     asked = request(dem, wind=ConstantWind.from_direction(7.0, 250.0), vehicle=Vehicle(12.0, speed_model="paper"))

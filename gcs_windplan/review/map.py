@@ -151,7 +151,8 @@ def _name_area(axes: Any, prism: Prism) -> None:
 
 def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     """Arrows towards where the wind blows, at the route's mean height above ground."""
-    planned = choose_area(plan.request, _line(plan))  # the wind need not be known beyond it
+    sites = np.array([(site.east, site.north) for site in plan.request.sites])
+    planned = choose_area(plan.request, sites)  # the wind need not be known beyond it
     inset = 0.5 / _ARROWS * max(extent.east - extent.west, extent.north - extent.south)
     inner = Extent(
         max(extent.west + inset, planned.west),

@@ -13,7 +13,7 @@ from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import edge_between, remaining, search_csr, search_grid
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
-from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
+from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
 from gcs_windplan.wind.field import WindField
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
@@ -24,6 +24,7 @@ _ADVICE = {
     BREACHES[UNKNOWN_GROUND]: "Add terrain around the sites, or move them.",
     BREACHES[TOO_HIGH]: "Raise max_height, lower the clearance, refine the graph, or widen graph.margin.",
     BREACHES[OBSTACLE]: "Move the site, lower the obstacle's margin, refine the graph or widen graph.margin.",
+    BREACHES[OUTSIDE]: "Widen graph.margin.",
     BREACHES[AIRSPACE]: "Move the site, correct the areas, or widen graph.margin.",
     _CUT_BY_WIND: "More airspeed, another departure, or other layers.",
 }

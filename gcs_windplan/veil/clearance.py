@@ -11,13 +11,14 @@ from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray
 from gcs_windplan.veil.airspace import Airspace
 
 if TYPE_CHECKING:
-    from gcs_windplan.terrain import Dem, MeshTerrain, Obstacles, Terrain
+    from gcs_windplan.terrain import Dem, Extent, MeshTerrain, Obstacles, Terrain
 
 TOO_LOW: Final = 1
 UNKNOWN_GROUND: Final = 2
 TOO_HIGH: Final = 4
 OBSTACLE: Final = 8
 AIRSPACE: Final = 16
+OUTSIDE: Final = 32
 
 BREACHES: Final = {
     TOO_LOW: "terrain (closer to the ground than the clearance)",
@@ -25,6 +26,7 @@ BREACHES: Final = {
     TOO_HIGH: "height limit (higher above ground than max_height)",
     OBSTACLE: "obstacle (closer than its margin)",
     AIRSPACE: "keep-out or keep-in area",
+    OUTSIDE: "edge of the area (the sites' box with graph.margin)",
 }
 
 CollisionTest: TypeAlias = Literal["exact", "paper"]
@@ -38,7 +40,8 @@ class Clearance:
     """The rules for a leg over one terrain.
 
     `minimum` is the smallest, `maximum` the largest vertical distance to the ground [m] anywhere along the leg;
-    obstacles keep their own margins. All tests are exact: nothing is sampled.
+    obstacles keep their own margins. All tests are exact: nothing is sampled. Legs stay inside `area`, if there is one:
+    beyond it neither wind nor ground need be known.
 
     With the `test` `paper` a leg is too low only where the paper's sampled area test (8) finds it to touch a triangle
     of the ground; `minimum` then only lifts nodes above obstacles. It lets legs through thin ridges: for comparison.
@@ -50,6 +53,7 @@ class Clearance:
     obstacles: Obstacles | None = None
     airspace: Airspace = field(default_factory=Airspace)
     test: CollisionTest = "exact"
+    area: Extent | None = None
 
     def breaches(self, starts: FloatArray, ends: FloatArray) -> FlagArray:
         """What legs (n, 3) break, shape (n,): 0, or a sum of the flags in `BREACHES`."""
@@ -66,6 +70,8 @@ class Clearance:
             flags |= np.where(margins < -_SLACK, OBSTACLE, 0).astype(np.uint8)
         if self.airspace.keep_out or self.airspace.keep_in:
             flags |= np.where(self.airspace.breaches(starts, ends), AIRSPACE, 0).astype(np.uint8)
+        if self.area is not None:
+            flags |= np.where(_beyond(self.area, starts) | _beyond(self.area, ends), OUTSIDE, 0).astype(np.uint8)
         return flags
 
     def _too_low(self, starts: FloatArray, ends: FloatArray, low: FloatArray) -> BoolArray:
@@ -84,3 +90,10 @@ class Clearance:
         if self.obstacles is not None:
             z = np.maximum(z, self.obstacles.clear_heights_at(places, self.minimum))
         return np.column_stack([places[:, :2], z])
+
+
+def _beyond(area: Extent, points: FloatArray) -> BoolArray:
+    """Which points (n, 3) lie outside of a box."""
+    east, north = points[:, 0], points[:, 1]
+    outside: BoolArray = (east < area.west - _SLACK) | (east > area.east + _SLACK)
+    return outside | (north < area.south - _SLACK) | (north > area.north + _SLACK)
