@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from gcs_windplan.cli import compare, plan, schema
+from gcs_windplan.cli import compare, plan, reproduce, schema
 from gcs_windplan.errors import InputError, NoRouteError
 
 _EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
@@ -25,6 +25,7 @@ app = typer.Typer(
 )
 app.command("plan", help=plan.HELP, epilog=_EPILOG)(plan.plan)
 app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
+app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
 
 

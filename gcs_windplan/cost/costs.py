@@ -20,7 +20,7 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost.sampling import integrate, performance_of
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import best_first as kernel
-from gcs_windplan.kernels.triangle import enclosing_disc, mean_angles
+from gcs_windplan.kernels.triangle import mean_angles
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
@@ -129,6 +129,9 @@ class LegCost:
 
 
 def enclosing_ball(winds: FloatArray) -> tuple[FloatArray, float]:
-    """A disc (centre (2,), radius [m/s]) around all winds (n, 2 or more), NaN left out; at most a tenth too large."""
-    east, north, radius = enclosing_disc(np.ascontiguousarray(winds))
-    return np.array([east, north]), radius
+    """A disc (centre (2,), radius [m/s]) around all winds (n, 2 or more) about the middle of their box, but NaN."""
+    known = winds[~np.isnan(winds[:, 0]), :2]
+    if len(known) == 0:
+        return np.zeros(2), 0.0
+    centre = (known.min(axis=0) + known.max(axis=0)) / 2
+    return centre, float(np.sqrt(((known - centre) ** 2).sum(axis=1).max()))

@@ -8,7 +8,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def inside(corners: FloatArray, x: float, y: float) -> bool:
     """Whether a place lies in a polygon (k, 2), by the even-odd rule."""
     odd = False
@@ -21,7 +21,7 @@ def inside(corners: FloatArray, x: float, y: float) -> bool:
     return odd
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def _crossings(corners: FloatArray, ax: float, ay: float, bx: float, by: float, cuts: FloatArray) -> int:
     """Where a leg crosses the polygon's border, as fractions of the leg between 0 and 1, sorted into `cuts`."""
     count = 0
@@ -48,7 +48,7 @@ def _crossings(corners: FloatArray, ax: float, ay: float, bx: float, by: float, 
     return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def _beyond_box(box: FloatArray, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether a leg's box misses the polygon's box (west, south, east, north)."""
     west, south, east, north = box

@@ -33,7 +33,7 @@ BALL_E, BALL_N, BALL_RADIUS, BALL_UP, BALL_DOWN = (
 SETTINGS = 12
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def edge_cost(
     performance: FloatArray, setting: FloatArray,
     level: float, east: float, north: float, climb: float,
@@ -121,7 +121,7 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
     return seconds
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
     """Put a node into the 4-ary heap of `size` entries; there must be room for one more."""
     hole = size
@@ -136,7 +136,7 @@ def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -
     nodes[hole] = node
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     """Drop the first of `size` entries; the last one sinks from the top."""
     last = size - 1
@@ -159,7 +159,7 @@ def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     nodes[hole] = node
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, IntArray]:
     """The heap's arrays, twice as long if `needed` entries do not fit."""
     if needed <= keys.size:

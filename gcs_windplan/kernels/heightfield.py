@@ -35,7 +35,7 @@ _BOX = 1 + 1e-9
 _kernel = numba.njit(cache=True, error_model="numpy")
 # Pieces are called by kernels alone; the wrappers for other callers would take a seventh of the time to compile.
 _BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_piece = numba.njit(cache=True, error_model="numpy", **_BARE)
+_piece = numba.njit(error_model="numpy", **_BARE)
 
 
 @_piece

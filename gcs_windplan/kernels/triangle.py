@@ -16,7 +16,7 @@ from gcs_windplan.arrays import FloatArray, IntArray
 TRIANGLE, PAPER = 0, 1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def ground_speed(model: float, airspeed: float, along: float, cross: float) -> float:
     """Speed along the track [m/s] with the wind's components along and across it; 0 where it cannot be flown.
 
@@ -33,7 +33,7 @@ def ground_speed(model: float, airspeed: float, along: float, cross: float) -> f
     return max(0.0, math.sqrt(rest) + along)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def leg_seconds(
     performance: FloatArray,
     level: float, east: float, north: float, climb: float,
@@ -73,7 +73,7 @@ def leg_seconds(
     return vertical
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(error_model="numpy")
 def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float) -> float:
     """The angle between a direction and the wind [rad], 0..π: equation (10) with atan2 for the printed arctan.
 
@@ -129,44 +129,3 @@ def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
             means[i] += wind_angle(vectors[i, 0], vectors[i, 1], vectors[i, 2], winds[k, 0], winds[k, 1], winds[k, 2])
         means[i] /= max(each, 1)
     return means
-
-
-@numba.njit(cache=True, error_model="numpy")
-def enclosing_disc(winds: FloatArray) -> tuple[float, float, float]:
-    """A disc around all winds (n, 2 or more): its centre's components and its radius [m/s]; winds that are NaN are
-    left out.
-
-    Ritter 1990, "An efficient bounding sphere" (Graphics Gems): a disc over two far points, grown wherever one sticks
-    out.
-    """
-    n = winds.shape[0]
-    known = 0
-    while known < n and math.isnan(winds[known, 0]):
-        known += 1
-    if known == n:
-        return 0.0, 0.0, 0.0
-    ax, ay = winds[known, 0], winds[known, 1]
-    bx, by = _farthest(winds, ax, ay)
-    ax, ay = _farthest(winds, bx, by)
-    east, north, radius = 0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * math.hypot(ax - bx, ay - by)
-    for i in range(n):
-        away = math.hypot(winds[i, 0] - east, winds[i, 1] - north)
-        if away > radius:
-            grown = 0.5 * (radius + away)
-            share = (away - grown) / away
-            east += share * (winds[i, 0] - east)
-            north += share * (winds[i, 1] - north)
-            radius = grown
-    fx, fy = _farthest(winds, east, north)
-    return east, north, math.hypot(fx - east, fy - north)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _farthest(winds: FloatArray, east: float, north: float) -> tuple[float, float]:
-    """The wind that differs most from a given one."""
-    best, fx, fy = -1.0, east, north
-    for i in range(winds.shape[0]):
-        dx, dy = winds[i, 0] - east, winds[i, 1] - north
-        if dx * dx + dy * dy > best:
-            best, fx, fy = dx * dx + dy * dy, winds[i, 0], winds[i, 1]
-    return fx, fy
