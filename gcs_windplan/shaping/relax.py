@@ -31,13 +31,15 @@ _GOLDEN: Final = 2.399963  # [rad] the golden angle: no direction comes twice
 _RISE: Final = 0.1  # of a level step: heights differ less than places do
 _LOOKS: Final = 16  # sweeps between two looks at the cost
 _REST: Final = 5e-6  # of the cost: gaining less between two looks, vertices are at rest
-_SPARE: Final = 6e-4  # of the cost, that fewer waypoints may take
+_SPARE: Final = 5e-4  # of the cost, that fewer waypoints may take
+_SHARE: Final = 0.05  # of what moving has gained, that they may take as well
 
 
 def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float = _SPARE) -> FloatArray:
     """A polyline (m, 3) with the same ends that is never dearer than the given one (n, 3), all legs clear.
 
-    Of all those found, the one with the fewest waypoints whose cost lies within `spare` of the cheapest.
+    Of all those found, the one with the fewest waypoints whose cost lies within `spare` of the cheapest, or gives
+    back a twentieth of what was gained.
     """
     given = cost.of_polyline(points)
     if not np.isfinite(given):
@@ -50,7 +52,7 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
             best, best_cost = finer, finer_cost
         if gain < _WORTH * best_cost:
             break
-    limit = min(given, (1 + spare) * best_cost)
+    limit = min(given, (1 + spare) * best_cost + _SHARE * (given - best_cost))
     while True:
         thinned = thin(best, cost, clearance, limit)
         if len(thinned) == len(best):
