@@ -156,7 +156,7 @@ def _plan(
 
 
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
-    """What a pilot must know: models that flatter, tests that miss."""
+    """What a pilot must know: models that flatter, tests that miss, what the vehicle does not hold."""
     notes = []
     strongest = float(np.nanmax(np.hypot(windy.winds[:, 0], windy.winds[:, 1]), initial=0.0))
     if request.vehicle.speed_model == "paper":
@@ -166,4 +166,10 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
         notes.append(f"{text}. Plan with `triangle` to fly.")
     if request.collision_test == "paper":
         notes.append("the collision test `paper` samples: a leg may pass through a thin ridge. Fly with `exact`.")
+    lost = [f"'{area.name}'" for area in request.fence if area.heights_lost]
+    if lost:
+        text = f"the fence holds {', '.join(lost)} in plan only, without floor and ceiling"
+        notes.append(f"{text}: set the vehicle's own limits of altitude.")
+    if request.rally and request.finish == "return":
+        notes.append("at the end the vehicle returns to the rally point nearest to it, or home if that is nearer.")
     return tuple(notes)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, TypeAlias
 
+from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import Problem
 from gcs_windplan.geodesy import LocalFrame
@@ -21,7 +22,7 @@ AltitudeReference: TypeAlias = Literal["relative", "amsl"]
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A place that the route must pass: start, via or goal.
+    """A place that the route must pass (start, via, goal), or one beside it (a rally point, the fence's return point).
 
     `east` and `north` in the local frame [m]. Its height is `above_ground`, or `altitude` above mean sea level [m];
     with neither, the lowest layer of the veil. `field` names it in the mission file.
@@ -32,6 +33,22 @@ class Site:
     north: float
     above_ground: float | None = None
     altitude: float | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FenceArea:
+    """An area of the fence that the autopilot keeps by itself: in plan only, as fences have no heights.
+
+    `places` (n, 2) [m] are a polygon's corners in the local frame; with a `radius` [m] there is one, a circle's
+    centre. The route keeps to it because the airspace holds it too, with a margin. `heights_lost` where it has a
+    floor or a ceiling there.
+    """
+
+    name: str
+    places: FloatArray
+    radius: float | None = None
+    inclusion: bool = True
+    heights_lost: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +84,9 @@ class Request:
 
     `clearance` and `max_height` [m above ground] hold for every leg along its whole length. `layers` are heights above
     ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. A vehicle that
-    returns at the end flies home at `return_height` above home [m], or higher if it is. `locate` puts file and line
-    to a problem that names a field.
+    returns at the end flies home at `return_height` above home [m], or higher if it is; or to the nearest `rally`
+    point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into the mission
+    beside the route. `locate` puts file and line to a problem that names a field.
     """
 
     name: str
@@ -92,12 +110,20 @@ class Request:
     finish: Finish = "land"
     return_height: float = 15.0
     export: Export = field(default_factory=Export)
+    fence: tuple[FenceArea, ...] = ()
+    fence_return: Site | None = None
+    rally: tuple[Site, ...] = ()
     locate: Callable[[Problem], Problem] = lambda problem: problem
 
     @property
     def sites(self) -> tuple[Site, ...]:
         """Start, vias and goal, in the order they are passed."""
         return (self.start, *self.via, self.goal)
+
+    @property
+    def places_beside(self) -> tuple[Site, ...]:
+        """Rally points and the fence's return point: where the vehicle may go instead of along the route."""
+        return self.rally if self.fence_return is None else (*self.rally, self.fence_return)
 
     def __repr__(self) -> str:
         return f"Request({self.name!r}: {self.cost} over {self.terrain.name} in {self.wind.name})"

@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import Problem, RequestError
 from gcs_windplan.request import Request, Roadmap, Site, Uniform
-from gcs_windplan.terrain import Extent
+from gcs_windplan.terrain import Extent, Terrain
 from gcs_windplan.veil import SHARE_OF_GRID, Airspace, Clearance, roadmap_radius
 
 _USUAL_ROOM = 90.0  # [m] from the clearance up, where no height limit is given: 30 m and 120 m are the usual pair
@@ -90,27 +90,44 @@ def _refuse(request: Request, text: str, field: str) -> NoReturn:
     raise RequestError(request.locate(Problem(text, field)))
 
 
-def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
-    """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them."""
-    problems = _limits(request, layers)
-    points = np.empty((len(request.sites), 3))
-    for i, site in enumerate(request.sites):
-        ground = float(rules.terrain.heights_at(np.array([[site.east, site.north]]))[0])
+def site_points(request: Request, sites: Sequence[Site], layers: Sequence[float]) -> FloatArray:
+    """Sites as points (n, 3) [m]; a height over unknown terrain is NaN where it counts from the ground."""
+    points = np.empty((len(sites), 3))
+    for i, site in enumerate(sites):
+        ground = _ground(request.terrain, site.east, site.north)
         points[i] = site.east, site.north, _height(site, ground, layers[0])
-        problem = _misplaced(site, points[i], ground, request, rules)
-        if problem is None and (site.field == "start" or (site.field == "goal" and request.finish == "land")):
-            problem = _column_blocked(points[i], ground, rules)
+    return points
+
+
+def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
+    """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them and with places beside."""
+    problems = _limits(request, layers)
+    points = site_points(request, request.sites, layers)
+    beside = site_points(request, request.places_beside, layers)
+    landing = {"start", "goal"} if request.finish == "land" else {"start"}
+    if request.vehicle.type == "multicopter":
+        landing |= {site.field for site in request.rally}  # where it lands; a fixed-wing circles there
+    everything = [*zip(request.sites, points, strict=True), *zip(request.places_beside, beside, strict=True)]
+    for site, point in everything:
+        problem = _misplaced(site, point, request, rules)
+        if problem is None and site.field in landing:
+            problem = _column_blocked(point, rules)
         if problem is not None:
             problems.append(Problem(problem, site.field))
     if not problems and request.finish == "return":
-        problems += _return_blocked(request, points, rules)
+        problems += _returns_blocked(request, points, beside, rules)
     return points, problems
 
 
-def _column_blocked(point: FloatArray, ground: float, rules: Clearance) -> str | None:
+def _ground(terrain: Terrain, east: float, north: float) -> float:
+    """The terrain's height at a place [m above mean sea level], NaN where it is not known."""
+    return float(terrain.heights_at(np.array([[east, north]]))[0])
+
+
+def _column_blocked(point: FloatArray, rules: Clearance) -> str | None:
     """What stands in the way straight up from the ground to a point, or down to it."""
     foot = point.copy()
-    foot[2] = ground
+    foot[2] = _ground(rules.terrain, point[0], point[1])
     obstacles, keep_out = rules.obstacles, Airspace(rules.airspace.keep_out)
     if broken := keep_out.broken_by(foot, point):
         return f"the way straight up from the ground there crosses '{broken[0]}': move the site or correct the area"
@@ -119,21 +136,32 @@ def _column_blocked(point: FloatArray, ground: float, rules: Clearance) -> str |
     return None
 
 
-def _return_blocked(request: Request, points: FloatArray, rules: Clearance) -> list[Problem]:
-    """What the straight flight home breaks: at the goal's height, or the return height above home if that is more."""
-    home = float(rules.terrain.heights_at(points[:1])[0])
+def _returns_blocked(request: Request, points: FloatArray, beside: FloatArray, rules: Clearance) -> list[Problem]:
+    """What the straight flight back breaks: the one home, and those to the rally points, which may be nearer."""
+    home = _ground(rules.terrain, points[0, 0], points[0, 1])
     height = max(float(points[-1, 2]), home + request.return_height)
-    away, back = points[-1].copy(), points[0].copy()
-    away[2] = back[2] = height
+    problems = _return_blocked("finish", "home", points[-1], points[0], (home, height), rules)
+    for site, point in zip(request.rally, beside[: len(request.rally)], strict=True):
+        levels = home, max(height, float(point[2]))
+        problems += _return_blocked(site.field, "from the goal to it", points[-1], point, levels, rules)
+    return problems
+
+
+def _return_blocked(
+    field: str, way: str, goal: FloatArray, target: FloatArray, levels: tuple[float, float], rules: Clearance
+) -> list[Problem]:
+    """What is wrong with the straight flight from the goal over a target; `levels` are home's and the flight's."""
+    away, back = goal.copy(), target.copy()
+    away[2] = back[2] = levels[1]
     heights = rules.terrain.leg_heights(away[None], back[None])[0]
     problems = []
-    if not heights[0] >= request.clearance - _SLACK:
-        problems.append(Problem(_low_return(height, home, heights[0], request.clearance), "finish"))
+    if not heights[0] >= rules.minimum - _SLACK:
+        problems.append(Problem(_low_return(way, levels, heights[0], rules.minimum), field))
     if broken := rules.airspace.broken_by(away, back):
-        problems.append(Problem(f"the straight flight home breaks '{broken[0]}': land at the goal instead", "finish"))
+        problems.append(Problem(f"the straight flight {way} breaks '{broken[0]}': land at the goal instead", field))
     obstacles = rules.obstacles
     if obstacles is not None and obstacles.leg_margins(away[None], back[None])[0] < -_SLACK:
-        problems.append(Problem("the straight flight home comes too close to an obstacle: land at the goal", "finish"))
+        problems.append(Problem(f"the straight flight {way} comes too close to an obstacle: land at the goal", field))
     return problems
 
 
@@ -157,8 +185,9 @@ def _height(site: Site, ground: float, lowest_layer: float) -> float:
     return ground + (lowest_layer if site.above_ground is None else site.above_ground)
 
 
-def _misplaced(site: Site, point: FloatArray, ground: float, request: Request, rules: Clearance) -> str | None:
+def _misplaced(site: Site, point: FloatArray, request: Request, rules: Clearance) -> str | None:
     """What is wrong with a site's place or height, if anything."""
+    ground = _ground(rules.terrain, site.east, site.north)
     outside = rules.terrain.extent.misses(site.east, site.north)
     if outside > 0:
         return f"lies {outside / 1000:.2f} km outside of the terrain ({rules.terrain.name}): move it or add a tile"
@@ -179,14 +208,15 @@ def _misplaced(site: Site, point: FloatArray, ground: float, request: Request, r
     return None
 
 
-def _low_return(height: float, home: float, lowest: float, clearance: float) -> str:
-    """What to say of a flight home whose smallest height over the ground is `lowest` [m]."""
+def _low_return(way: str, levels: tuple[float, float], lowest: float, clearance: float) -> str:
+    """What to say of a flight back whose smallest height over the ground is `lowest` [m]."""
+    home, height = levels
     if math.isnan(lowest):
-        return "the straight flight home leads over unknown ground: land at the goal"
+        return f"the straight flight {way} leads over unknown ground: land at the goal"
     passes = f"within {lowest:.0f} m of" if lowest >= 0 else f"{-lowest:.0f} m below"
     needed = math.ceil(height - home + clearance - lowest)
     return (
-        f"the straight flight home at {height:.0f} m above sea level passes {passes} the ground: land at the goal, or"
+        f"the straight flight {way} at {height:.0f} m above sea level passes {passes} the ground: land at the goal, or"
         f" set the vehicle's return altitude and `return_height` to {needed} m"
     )
 

@@ -47,6 +47,10 @@ def plan(
     written = write(files, folder)
     print_legs(planned)
     report(written)
+    beside = [name for name, there in (("fence", request.fence), ("rally points", request.rally)) if there]
+    if request.export.waypoints and beside:
+        stem = file_stem(request)
+        typer.echo(f"note: {stem}.waypoints has no place for {' and '.join(beside)}: upload {stem}.plan")
     for path in stale(folder, request, files):
         typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
 
@@ -63,7 +67,7 @@ def render(planned: Plan) -> dict[str, str | bytes]:
     mission = mission_of(planned)
     files: dict[str, str | bytes] = {}
     if request.export.waypoints:
-        files[f"{stem}.waypoints"] = format_waypoints(mission)
+        files[f"{stem}.waypoints"] = format_waypoints(mission.without_fence())
     if request.export.plan:
         files[f"{stem}.plan"] = format_plan(mission)
     files["summary.json"] = format_summary(planned)

@@ -28,6 +28,21 @@ def number_text(value: float) -> str:
     return str(int(value)) if value == int(value) else format(Decimal(repr(value)), "f")
 
 
+def json_number(number: float) -> float:
+    """The number as JSON shows it best: whole ones without a point."""
+    return int(number) if number == int(number) else number
+
+
+def json_degrees(latitude_deg: float, longitude_deg: float) -> list[float]:
+    """A place with the digits of `degrees_text`."""
+    return [json_number(float(degrees_text(degrees))) for degrees in (latitude_deg, longitude_deg)]
+
+
+def json_place(latitude_deg: float, longitude_deg: float, altitude: float) -> list[float]:
+    """A place with the digits of `degrees_text`, and its altitude [m] to the millimetre."""
+    return [*json_degrees(latitude_deg, longitude_deg), json_number(round(altitude, 3))]
+
+
 def metres_text(metres: float) -> str:
     """Metres with 3 decimals, never `-0.000`."""
     return f"{round(metres, 3) + 0.0:.3f}"

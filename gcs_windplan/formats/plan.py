@@ -1,6 +1,6 @@
 """`.plan`, QGroundControl's mission file: one JSON object.
 
-    fileType "Plan", version 1, groundStation, geoFence{}, rallyPoints{}
+    fileType "Plan", version 1, groundStation, geoFence{}, rallyPoints{} (geofence.py)
     mission: version 2, firmwareType, vehicleType, cruiseSpeed, hoverSpeed,
              plannedHomePosition [latitude, longitude, AMSL], items
       each item: type "SimpleItem", command, frame, params [7, null for NaN], autoContinue, doJumpId
@@ -21,8 +21,9 @@ from typing import Any
 from pymavlink.dialects.v20 import common as mavlink
 
 from gcs_windplan.errors import FormatError, InputError, Problem
-from gcs_windplan.formats.digits import degrees_text
+from gcs_windplan.formats.digits import json_number, json_place
 from gcs_windplan.formats.document import Node, parse_document
+from gcs_windplan.formats.geofence import fence_object, rally_object, read_fence, read_rally
 from gcs_windplan.formats.reading import ReadMission, Repairs, home_or_none, read_text, without_mark
 from gcs_windplan.formats.writing import write_atomically
 from gcs_windplan.mission import (
@@ -49,8 +50,6 @@ _ROTORS = "QUADROTOR COAXIAL HELICOPTER TRICOPTER HEXAROTOR OCTOROTOR DECAROTOR 
 _MULTICOPTERS = frozenset(getattr(mavlink, f"MAV_TYPE_{name}") for name in _ROTORS.split())
 # QGroundControl's AltMode; 0 is mixed
 _ALTITUDE_MODES: dict[int, int] = {Frame.GLOBAL_RELATIVE_ALT: 1, Frame.GLOBAL: 2, Frame.GLOBAL_TERRAIN_ALT: 4}
-_NO_FENCE = {"circles": [], "polygons": [], "version": 2}
-_NO_RALLY_POINTS = {"points": [], "version": 2}
 
 
 def write_plan(mission: Mission, path: str | os.PathLike[str]) -> None:
@@ -62,24 +61,24 @@ def format_plan(mission: Mission) -> str:
     """The text of the mission's .plan file; raises FormatError for a mission without home.
 
     Coordinates are rounded to 1e-7 degrees, altitudes to millimetres; the deprecated _INT frames, which
-    QGroundControl would take for AMSL, become plain ones. Fence and rally points are there and empty, as its
-    readers demand.
+    QGroundControl would take for AMSL, become plain ones. Fence and rally points are there even where they are
+    empty, as its readers demand; rally points above ground have no place there and raise FormatError.
     """
     if mission.home is None:
         raise FormatError("a .plan file needs the planned home, and this mission has none: give it one")
     document = {
         "fileType": "Plan",
-        "geoFence": _NO_FENCE,
+        "geoFence": fence_object(mission.fence),
         "groundStation": "gcs-windplan",
         "mission": _mission_object(mission, mission.home),
-        "rallyPoints": _NO_RALLY_POINTS,
+        "rallyPoints": rally_object(mission.rally, mission.home),
         "version": 1,
     }
     return json.dumps(document, indent=4, sort_keys=True, allow_nan=False) + "\n"
 
 
 def _mission_object(mission: Mission, home: Home) -> dict[str, Any]:
-    place = _place(home.point.latitude_deg, home.point.longitude_deg, home.altitude)
+    place = json_place(home.point.latitude_deg, home.point.longitude_deg, home.altitude)
     speeds = {"cruiseSpeed": mission.cruise_speed, "hoverSpeed": mission.hover_speed}
     return {
         "firmwareType": 0 if mission.autopilot is None else _FIRMWARES[mission.autopilot],
@@ -88,7 +87,7 @@ def _mission_object(mission: Mission, home: Home) -> dict[str, Any]:
         "plannedHomePosition": place,
         "vehicleType": 0 if mission.vehicle_type is None else _VEHICLES[mission.vehicle_type],
         "version": 2,
-        **{key: _tidy(speed) for key, speed in speeds.items() if speed is not None},
+        **{key: json_number(speed) for key, speed in speeds.items() if speed is not None},
     }
 
 
@@ -103,7 +102,7 @@ def _altitude_mode(item: MissionItem) -> int | None:
 
 
 def _item_object(item: MissionItem, number: int) -> dict[str, Any]:
-    place = _place(item.latitude_deg, item.longitude_deg, item.altitude)
+    place = json_place(item.latitude_deg, item.longitude_deg, item.altitude)
     mode = _altitude_mode(item)
     altitude = {"AMSLAltAboveTerrain": None, "Altitude": place[2], "AltitudeMode": mode}
     return {
@@ -111,19 +110,10 @@ def _item_object(item: MissionItem, number: int) -> dict[str, Any]:
         "command": int(item.command),
         "doJumpId": number,
         "frame": plain_frame(item.frame),
-        "params": [*(None if math.isnan(param) else _tidy(param) for param in item.params), *place],
+        "params": [*(None if math.isnan(param) else json_number(param) for param in item.params), *place],
         "type": "SimpleItem",
         **(altitude if mode is not None else {}),
     }
-
-
-def _place(latitude_deg: float, longitude_deg: float, altitude: float) -> list[float]:
-    degrees = (float(degrees_text(latitude_deg)), float(degrees_text(longitude_deg)))
-    return [_tidy(number) for number in (*degrees, round(altitude, 3))]
-
-
-def _tidy(number: float) -> float:
-    return int(number) if number == int(number) else number
 
 
 def read_plan(path: str | os.PathLike[str]) -> ReadMission:
@@ -135,8 +125,8 @@ def read_plan(path: str | os.PathLike[str]) -> ReadMission:
 def parse_plan(text: str, name: str = "<text>") -> ReadMission:
     """Read the text of a .plan file; `name` stands for the file in messages.
 
-    Fence and rally points are left out, which is said among the repairs. Raises FormatError for other
-    versions and for complex items that do not carry their simple ones.
+    What cannot be used of fence and rally points is left out, which is said among the repairs. Raises FormatError
+    for other versions and for complex items that do not carry their simple ones.
     """
     return _parse(text, Path(name), Repairs())
 
@@ -151,8 +141,8 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     vehicle_type = _vehicle_type(mission.at("vehicleType"), repairs)
     cruise_speed = _speed(mission.at("cruiseSpeed"), repairs)
     hover_speed = _speed(mission.at("hoverSpeed"), repairs)
-    _note_left_out(root, repairs)
-    read = Mission(items, home, autopilot, vehicle_type, cruise_speed, hover_speed)
+    fence, rally = read_fence(root, repairs), read_rally(root, repairs)
+    read = Mission(items, home, autopilot, vehicle_type, cruise_speed, hover_speed, fence, rally)
     return ReadMission(read, repairs.sentences())
 
 
@@ -286,12 +276,3 @@ def _speed(node: Node, repairs: Repairs) -> float | None:
         return speed
     repairs.add(f"{node.path} {speed:g} is no speed; it was left out")
     return None
-
-
-def _note_left_out(root: Node, repairs: Repairs) -> None:
-    parts = (("geoFence", "circles"), ("geoFence", "polygons"), ("rallyPoints", "points"))
-    for key, name in parts:
-        value = root.at(key).value
-        members = value.get(name) if isinstance(value, dict) else None
-        if isinstance(members, list) and members:
-            repairs.add(f"{key}.{name} ({len(members)}) were left out: only the mission is read")

@@ -52,13 +52,18 @@ def write_waypoints(mission: Mission, path: str | os.PathLike[str]) -> None:
 
 
 def format_waypoints(mission: Mission) -> str:
-    """The text of the mission's .waypoints file; raises FormatError for a mission without home.
+    """The text of the mission's .waypoints file.
 
     Coordinates are rounded to 1e-7 degrees, altitudes to millimetres; the deprecated _INT frames become plain
-    ones. Vehicle, autopilot and speeds have no place in this format.
+    ones. Vehicle, autopilot and speeds have no place in this format. Raises FormatError for a mission without home,
+    and for one with a fence or rally points: nobody shall take the file for the whole of it.
+    `Mission.without_fence()` can be written.
     """
     if mission.home is None:
         raise FormatError("a .waypoints file begins with home, and this mission has none: give it one")
+    if mission.fence is not None or mission.rally:
+        held = " and ".join(["a fence"] * (mission.fence is not None) + ["rally points"] * bool(mission.rally))
+        raise FormatError(f"a .waypoints file cannot hold {held}, and this mission has them: write a .plan file")
     rows = [_home_row(mission.home), *(_row(item) for item in mission.items)]
     lines = [f"{seq}\t{int(seq == 0)}\t{row}" for seq, row in enumerate(rows)]
     return "\n".join(["QGC WPL 110", *lines, ""])

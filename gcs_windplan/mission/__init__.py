@@ -1,4 +1,4 @@
-"""Missions: items, commands and frames, and how a planned route becomes a mission."""
+"""Missions: items, commands and frames, fences and rally points, and how a planned route becomes a mission."""
 
 from gcs_windplan.mission.build import RoutePoint, route_mission
 from gcs_windplan.mission.commands import (
@@ -11,20 +11,40 @@ from gcs_windplan.mission.commands import (
     scales_place,
     takes_place,
 )
+from gcs_windplan.mission.fence import (
+    Fence,
+    FenceCircle,
+    FencePolygon,
+    RallyPoint,
+    ReturnPoint,
+    fence_items,
+    fence_of,
+    rally_items,
+    rally_of,
+)
 from gcs_windplan.mission.items import Home, Mission, MissionItem, degrees_e7
 
 __all__ = [
     "Command",
+    "Fence",
+    "FenceCircle",
+    "FencePolygon",
     "Frame",
     "Home",
     "Mission",
     "MissionItem",
+    "RallyPoint",
+    "ReturnPoint",
     "RoutePoint",
     "command_name",
     "degrees_e7",
+    "fence_items",
+    "fence_of",
     "frame_name",
     "is_global",
     "plain_frame",
+    "rally_items",
+    "rally_of",
     "route_mission",
     "scales_place",
     "takes_place",

@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 
 class Command(IntEnum):
-    """A mission command (MAV_CMD without its prefix)."""
+    """A command of missions, fences and rally points (MAV_CMD without its prefix)."""
 
     NAV_WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
     NAV_LOITER_UNLIM = mavlink.MAV_CMD_NAV_LOITER_UNLIM
@@ -43,6 +43,12 @@ class Command(IntEnum):
     DO_VTOL_TRANSITION = mavlink.MAV_CMD_DO_VTOL_TRANSITION
     DO_JUMP_TAG = mavlink.MAV_CMD_DO_JUMP_TAG
     JUMP_TAG = mavlink.MAV_CMD_JUMP_TAG
+    NAV_FENCE_RETURN_POINT = mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT
+    NAV_FENCE_POLYGON_VERTEX_INCLUSION = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION
+    NAV_FENCE_POLYGON_VERTEX_EXCLUSION = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+    NAV_FENCE_CIRCLE_INCLUSION = mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION
+    NAV_FENCE_CIRCLE_EXCLUSION = mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
+    NAV_RALLY_POINT = mavlink.MAV_CMD_NAV_RALLY_POINT
 
 
 class Frame(IntEnum):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geodesy import GeoPoint
@@ -15,6 +16,9 @@ from gcs_windplan.mission.commands import (
     takes_place,
 )
 from gcs_windplan.vehicle import Autopilot, VehicleType
+
+if TYPE_CHECKING:
+    from gcs_windplan.mission.fence import Fence, RallyPoint
 
 
 def degrees_e7(degrees: float) -> int:
@@ -109,11 +113,11 @@ class MissionItem:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Mission:
-    """Items in their order, and what is known of home and vehicle.
+    """Items in their order, what is known of home and vehicle, and the fence and rally points beside them.
 
     Home is not among `items`: it becomes row 0 of a .waypoints file and item 0 on ArduPilot when written
     there. `cruise_speed` (fixed-wing) and `hover_speed` (multicopter) [m/s] are what a ground station reckons
-    with.
+    with. Fence and rally points travel apart from the items (`fence_items`, `rally_items`).
     """
 
     items: tuple[MissionItem, ...]
@@ -122,6 +126,8 @@ class Mission:
     vehicle_type: VehicleType | None = None
     cruise_speed: float | None = None
     hover_speed: float | None = None
+    fence: Fence | None = None
+    rally: tuple[RallyPoint, ...] = ()
 
     def __post_init__(self) -> None:
         if self.autopilot not in (None, "ardupilot", "px4"):
@@ -135,4 +141,12 @@ class Mission:
     def __repr__(self) -> str:
         home = "no home" if self.home is None else f"home {self.home.point}, {self.home.altitude:.1f} m"
         vehicle = ", ".join(word for word in (self.autopilot, self.vehicle_type) if word is not None)
-        return f"<Mission of {len(self.items)} items, {home}{', ' if vehicle else ''}{vehicle}>"
+        beside = [] if self.fence is None else ["a fence"]
+        beside += [f"{len(self.rally)} rally points"] if self.rally else []
+        return (
+            f"<{', '.join(part for part in (f'Mission of {len(self.items)} items', home, vehicle, *beside) if part)}>"
+        )
+
+    def without_fence(self) -> Mission:
+        """The mission without fence and rally points, for formats that have no place for them."""
+        return replace(self, fence=None, rally=())

@@ -10,13 +10,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.request import Export, Request, Roadmap, Site, Uniform
+from gcs_windplan.request import Export, FenceArea, Request, Roadmap, Site, Uniform
 from gcs_windplan.siting import choose_margin
-from gcs_windplan.spec.model import AreaModel, GraphModel, MissionModel
+from gcs_windplan.spec.areas import AreaModel
+from gcs_windplan.spec.model import GraphModel, MissionModel
+from gcs_windplan.spec.outlines import fence_area_of, prism_of
 from gcs_windplan.spec.parsing import MissionDocument, read_document
 from gcs_windplan.spec.places import place_of
 from gcs_windplan.spec.terrain import build_obstacles, build_terrain
@@ -41,10 +42,12 @@ def read_mission(path: Path | str) -> Request:
     document = read_document(Path(path))
     model = document.model
     frame = _frame(model)
-    sites = _sites(model, frame)
-    _refuse_far(document, sites)
+    sites = [_site(name, site, frame) for name, site in _route(model)]
+    beside = [_site(name, site, frame) for name, site in _beside(model)]
+    _refuse_far(document, sites + beside)
     area = _area(model, sites)
-    terrain = _placed(document, "terrain", lambda: build_terrain(document, frame, area))
+    ground = _with(area, beside)
+    terrain = _placed(document, "terrain", lambda: build_terrain(document, frame, ground))
     problems: list[Problem] = []
     obstacles = _collected(document, "obstacles", problems, lambda: build_obstacles(document, frame, terrain))
     airspace = Airspace(
@@ -77,6 +80,9 @@ def read_mission(path: Path | str) -> Request:
         finish=model.finish,
         return_height=model.return_height,
         export=Export(**model.export.model_dump()),
+        fence=_fence(model, frame),
+        fence_return=None if model.fence.return_point is None else beside[-1],
+        rally=tuple(beside[: len(model.rally)]),
         locate=_locator(document),
     )
 
@@ -138,20 +144,30 @@ def _frame(model: MissionModel) -> LocalFrame:
     return LocalFrame(GeoPoint((min(latitudes) + max(latitudes)) / 2, (middle + 180) % 360 - 180))
 
 
-def _sites(model: MissionModel, frame: LocalFrame) -> list[Site]:
-    """Start, vias and goal in the local frame."""
-    named: list[tuple[str, SiteModel]] = [("start", model.start)]
-    named += [(f"via.{i}", via) for i, via in enumerate(model.via)]
-    named += [("goal", model.goal)]
-    return [Site(name, *place_of(site, frame), site.height, site.altitude) for name, site in named]
+def _route(model: MissionModel) -> list[tuple[str, SiteModel]]:
+    """Start, vias and goal, by the names of their fields."""
+    vias = [(f"via.{i}", via) for i, via in enumerate(model.via)]
+    return [("start", model.start), *vias, ("goal", model.goal)]
+
+
+def _beside(model: MissionModel) -> list[tuple[str, SiteModel]]:
+    """Rally points and the fence's return point, by the names of their fields; the return point comes last."""
+    back = model.fence.return_point
+    rally = [(f"rally.{i}", point) for i, point in enumerate(model.rally)]
+    return rally if back is None else [*rally, ("fence.return_point", back)]
+
+
+def _site(name: str, model: SiteModel, frame: LocalFrame) -> Site:
+    return Site(name, *place_of(model, frame), model.height, model.altitude)
 
 
 def _refuse_far(document: MissionDocument, sites: list[Site]) -> None:
     """Raise for sites too near to a pole or too far from the start for a flat frame."""
     problems = []
-    models = (document.model.start, *document.model.via, document.model.goal)
-    for site, model in zip(sites, models, strict=True):
-        if model.latitude is not None and abs(model.latitude) > _NEAREST_POLE:
+    models = dict([*_route(document.model), *_beside(document.model)])
+    for site in sites:
+        latitude = models[site.field].latitude
+        if latitude is not None and abs(latitude) > _NEAREST_POLE:
             problems.append(document.problem(site.field, f"lies within {90 - _NEAREST_POLE:g}° of a pole: move it"))
         distance = float(np.hypot(site.east - sites[0].east, site.north - sites[0].north))
         if distance > _FARTHEST:
@@ -173,6 +189,25 @@ def _area(model: MissionModel, sites: list[Site]) -> Extent:
     return Extent(float(west), float(south), float(east), float(north))
 
 
+def _with(area: Extent, sites: list[Site]) -> Extent:
+    """The box that terrain is read for: the area, and what lies beside it."""
+    if not sites:
+        return area
+    east, north = [site.east for site in sites], [site.north for site in sites]
+    return Extent(
+        min(area.west, *(e - _SPARE for e in east)),
+        min(area.south, *(n - _SPARE for n in north)),
+        max(area.east, *(e + _SPARE for e in east)),
+        max(area.north, *(n + _SPARE for n in north)),
+    )
+
+
+def _fence(model: MissionModel, frame: LocalFrame) -> tuple[FenceArea, ...]:
+    """The areas that the autopilot's fence holds too."""
+    areas = [(area, True) for area in model.keep_out] + [(area, False) for area in model.keep_in]
+    return tuple(fence_area_of(area, frame, keep_out) for area, keep_out in areas if area.fence)
+
+
 def _prisms(
     document: MissionDocument,
     field: str,
@@ -183,25 +218,10 @@ def _prisms(
     """Keep-out or keep-in areas in the local frame; those that are no simple polygon become problems."""
     prisms = []
     for i, area in enumerate(areas):
+        shape = "polygon" if area.circle is None else "circle"
         prism = _collected(
-            document, f"{field}.{i}.polygon", problems, partial(_prism, area, frame, field == "keep_out")
+            document, f"{field}.{i}.{shape}", problems, partial(prism_of, area, frame, field == "keep_out")
         )
         if prism is not None:
             prisms.append(prism)
     return tuple(prisms)
-
-
-def _prism(area: AreaModel, frame: LocalFrame, keep_out: bool) -> Prism:
-    """An area with its margin: a keep-out grows by it, a keep-in shrinks."""
-    floor = -np.inf if area.floor is None else area.floor
-    ceiling = np.inf if area.ceiling is None else area.ceiling
-    prism = Prism(area.name, _corners(area, frame), floor, ceiling)
-    return prism.widened(area.margin if keep_out else -area.margin)
-
-
-def _corners(area: AreaModel, frame: LocalFrame) -> FloatArray:
-    """An area's corners (n, 2) [m]."""
-    if area.polygon.east_north is not None:
-        return np.array(area.polygon.east_north, dtype=np.float64)
-    places = np.array(area.polygon.latitude_longitude, dtype=np.float64)
-    return frame.to_local(places[:, 0], places[:, 1])

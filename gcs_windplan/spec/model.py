@@ -1,4 +1,4 @@
-"""The mission file's schema: vehicle, sites, limits, cost, graph, areas and the mission itself."""
+"""The mission file's schema: vehicle, sites, limits, cost, graph and the mission itself."""
 
 from __future__ import annotations
 
@@ -8,19 +8,15 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
+from gcs_windplan.spec.areas import AreaModel, FenceModel
 from gcs_windplan.spec.rules import DEFAULT_CLEARANCE, mission_contradictions
 from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one
 from gcs_windplan.spec.values import (
-    SIGNED_LENGTH,
     WEIGHT,
     Airspeed,
     FileStem,
     Flag,
     Height,
-    Label,
-    Latitude,
-    Length,
-    Longitude,
     NodeCount,
     PositiveLength,
     PositiveSpeed,
@@ -126,59 +122,6 @@ class GraphModel(Section):
         yield from at_most_one(fields, "uniform", "prm")
 
 
-class PolygonModel(Section):
-    """The corners of an area."""
-
-    expects: ClassVar[str] = "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
-
-    latitude_longitude: tuple[tuple[Latitude, Longitude], ...] | None = Field(
-        default=None, min_length=3, description="at least 3 corners; a list alone is short for this"
-    )
-    east_north: tuple[tuple[Length, Length], ...] | None = Field(
-        default=None,
-        min_length=3,
-        description="at least 3 corners in the local frame; needs `terrain.origin`",
-    )
-
-    @classmethod
-    def expanded(cls, data: object) -> object:
-        """A list alone holds latitudes and longitudes."""
-        return {"latitude_longitude": data} if isinstance(data, list | tuple) else data
-
-    @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
-        """Both kinds of corners, or none."""
-        names = ("latitude_longitude", "east_north")
-        if not any(name in fields for name in names):
-            yield Finding((), f"corners are missing; {cls.expects} belongs here")
-        yield from at_most_one(fields, *names)
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
-        long = dict(schema)
-        schema.clear()
-        schema.update(anyOf=[long["properties"]["latitude_longitude"]["anyOf"][0], long])
-        return schema
-
-
-class AreaModel(Section):
-    """An area with, if wanted, a floor and a ceiling."""
-
-    name: Label = Field(description="for messages and maps", examples=["school"])
-    polygon: PolygonModel = Field(description="its corners", examples=["[[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]"])
-    floor: Length | None = Field(default=None, description="above mean sea level; default: the ground")
-    ceiling: Length | None = Field(default=None, description="above mean sea level, above the floor; default: none")
-    margin: Height = Field(default=5.0, description="distance to keep from its border in plan")
-
-    @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
-        """A ceiling that is not above the floor."""
-        floor, ceiling = (SIGNED_LENGTH.read_or_none(fields.get(name)) for name in ("floor", "ceiling"))
-        if floor is not None and ceiling is not None and ceiling <= floor:
-            yield Finding(("ceiling",), f"{ceiling:g} m is not above the floor, {floor:g} m")
-
-
 class ExportModel(Section):
     """What is written, and how."""
 
@@ -218,6 +161,10 @@ class MissionModel(Section):
     graph: GraphModel = Field(default=GraphModel(uniform=UniformModel()), description="the nodes that are searched")
     keep_out: tuple[AreaModel, ...] = Field(default=(), description="areas no leg enters")
     keep_in: tuple[AreaModel, ...] = Field(default=(), description="areas no leg leaves")
+    fence: FenceModel = Field(default=FenceModel(), description="the autopilot's own fence; see `keep_out[].fence`")
+    rally: tuple[SiteModel, ...] = Field(
+        default=(), description="rally points: where the vehicle may return to in place of home"
+    )
     departure: UtcTime | None = Field(default=None, description="the time of take-off; kept in UTC")
     finish: Literal["land", "return", "hold"] = Field(default="land", description="what to do at the goal")
     return_height: Height = Field(

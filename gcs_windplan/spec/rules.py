@@ -17,6 +17,8 @@ from gcs_windplan.spec.values import CLEARANCE, HEIGHT, LATITUDE, LONGITUDE, SIG
 DEFAULT_CLEARANCE: Final = 30.0  # [m]
 _SAME_DEGREES: Final = 1e-7  # about a centimetre, and MAVLink's resolution of a coordinate
 _SAME_METRES: Final = 0.01
+_LEAST_MARGIN: Final = 2.0  # [m] ArduPilot's FENCE_MARGIN; by as much ArduCopter cuts corners (measured)
+_MOST_CORNERS: Final = 255  # ArduPilot counts them in one byte (AC_PolyFenceItem)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,7 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     yield from _layers_out_of_order(fields)
     yield from _local_without_origin(fields)
     yield from _equal_neighbours(fields)
+    yield from fence_contradictions(fields)
 
 
 def _layers_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
@@ -60,7 +63,7 @@ def _layers_out_of_order(fields: Fields) -> Iterator[Finding]:
 
 
 def _sites_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
-    for path, site in _sites(fields):
+    for path, site in [*_sites(fields), *_beside(fields)]:
         height = HEIGHT.read_or_none(site.get("height"))
         if height is not None and (complaint := _outside(height, limits)):
             yield Finding((*path, "height"), complaint)
@@ -83,7 +86,7 @@ def _local_without_origin(fields: Fields) -> Iterator[Finding]:
     if "origin" in terrain or not ("dem" in terrain or "sample" in terrain):
         return
     advice = "needs terrain.origin, which says where the local origin is"
-    for path, place in _sites(fields):
+    for path, place in [*_sites(fields), *_beside(fields)]:
         yield from _local_place(path, place, advice)
     for index, obstacle in _entries(fields, "obstacles"):
         if "at" in obstacle:
@@ -94,6 +97,7 @@ def _local_without_origin(fields: Fields) -> Iterator[Finding]:
         for index, area in _entries(fields, kind):
             if "east_north" in _section(area, "polygon"):
                 yield Finding((kind, index, "polygon", "east_north"), advice, at_key=True)
+            yield from _local_place((kind, index, "circle"), _section(area, "circle"), advice)
 
 
 def _local_place(path: Path, place: Fields, advice: str) -> Iterator[Finding]:
@@ -134,6 +138,56 @@ def _sites(fields: Fields) -> Iterator[tuple[Path, Fields]]:
     for index in range(len(via) if isinstance(via, list | tuple) else 0):
         yield ("via", index), _section(dict(_entries(fields, "via")), index)
     yield ("goal",), _section(fields, "goal")
+
+
+def _beside(fields: Fields) -> Iterator[tuple[Path, Fields]]:
+    """Rally points and the fence's return point, as far as they are there."""
+    for index, point in _entries(fields, "rally"):
+        yield ("rally", index), point
+    yield ("fence", "return_point"), _section(_section(fields, "fence"), "return_point")
+
+
+def fence_contradictions(fields: Fields) -> Iterator[Finding]:
+    """What the autopilot's fence cannot hold, and what would not reach the vehicle."""
+    fenced = [
+        ((kind, index), area)
+        for kind in ("keep_out", "keep_in")
+        for index, area in _entries(fields, kind)
+        if area.get("fence") is True
+    ]
+    for path, area in fenced:
+        yield from _unfit_for_fence(path, area, fields)
+    back = "return_point" in _section(fields, "fence")
+    if back and not fenced:
+        advice = "there is no fence to return from: mark a keep_out or keep_in area with 'fence: true'"
+        yield Finding(("fence", "return_point"), advice, at_key=True)
+    if (fenced or back or fields.get("rally")) and _section(fields, "export").get("plan") is False:
+        yield Finding(("export", "plan"), "fence and rally points fit only into a .plan file: leave this out")
+
+
+def _unfit_for_fence(path: Path, area: Fields, fields: Fields) -> Iterator[Finding]:
+    """An area that the fence would hold otherwise than the file says."""
+    for limit in ("floor", "ceiling") if path[0] == "keep_out" else ():
+        if limit in area:
+            text = f"a fence has no heights and would forbid what lies beyond the {limit} too"
+            yield Finding((*path, limit), f"{text}: leave out either this or 'fence: true'", at_key=True)
+    margin = HEIGHT.read_or_none(area.get("margin"))
+    if margin is not None and margin < _LEAST_MARGIN:
+        text = (
+            f"{margin:g} m is too little beside a fence that the vehicle must not touch: at least {_LEAST_MARGIN:g} m"
+        )
+        yield Finding((*path, "margin"), text)
+    corners = _corners(area)
+    if _section(fields, "vehicle").get("autopilot", "ardupilot") == "ardupilot" and corners > _MOST_CORNERS:
+        text = f"{corners} corners are more than the {_MOST_CORNERS} of ArduPilot's fence polygons: simplify it"
+        yield Finding((*path, "polygon"), text)
+
+
+def _corners(area: Fields) -> int:
+    polygon = area.get("polygon")
+    if isinstance(polygon, Mapping):
+        polygon = next((polygon[name] for name in ("latitude_longitude", "east_north") if name in polygon), None)
+    return len(polygon) if isinstance(polygon, list | tuple) else 0
 
 
 def _layers(fields: Fields) -> Iterator[tuple[int, float | None]]:

@@ -65,6 +65,23 @@ def test_plan_writes_everything(tmp_path):
     assert (folder / "small.waypoints").read_text().startswith("QGC WPL 110\n0\t1\t0\t16\t")
 
 
+def test_a_fence_goes_into_the_plan_and_the_other_file_is_said_to_lack_it(tmp_path):
+    square = {"name": "field", "polygon": {"east_north": [[-800, -800], [800, -800], [800, 800], [-800, 800]]}}
+    path = mission(tmp_path, keep_in=[{**square, "fence": True}], rally=[{"east": 0, "north": -300, "height": "60 m"}])
+    done = run("plan", path, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    folder = tmp_path / "out" / "small"
+    plan = json.loads((folder / "small.plan").read_text())
+    assert len(plan["geoFence"]["polygons"][0]["polygon"]) == 4
+    assert len(plan["rallyPoints"]["points"]) == 1
+    assert "note: small.waypoints has no place for fence and rally points: upload small.plan" in done.stdout
+    assert "\t5001\t" not in (folder / "small.waypoints").read_text()
+    done = run("plan", mission(tmp_path, rally=[{"east": 0, "north": -3000}]), cwd=tmp_path)
+    assert done.returncode == 2
+    assert "mission.yaml:" in done.stderr
+    assert "rally.0: lies 2.00 km outside of the terrain" in done.stderr
+
+
 def test_the_same_mission_gives_the_same_bytes(tmp_path):
     (tmp_path / "mission.yaml").write_text(GOOD)
     for folder in ("a", "b"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -119,7 +118,8 @@ def test_what_was_read_can_be_written_and_read_again(path: Path) -> None:
             format_plan(mission)
         return
     items = [content(item) for item in mission.items]
-    assert [content(item) for item in parse_waypoints(format_waypoints(mission)).mission.items] == items
+    sheet = format_waypoints(mission.without_fence())
+    assert [content(item) for item in parse_waypoints(sheet).mission.items] == items
     assert [content(item) for item in parse_plan(format_plan(mission)).mission.items] == items
 
 
@@ -127,10 +127,3 @@ def test_a_survey_is_read_through_the_items_it_carries() -> None:
     read = read_plan(MISSIONS / "mavsdk" / "qgroundcontrol_sample_with_survey.plan")
     assert len(read.mission.items) == 13
     assert read.repairs == ("mission.items[1] (survey, version 5) was replaced by the simple items it carries",)
-
-
-def test_the_fence_of_a_plan_is_said_to_be_left_out() -> None:
-    path = MISSIONS / "qgc" / "ce_geofence_rd_2.plan"
-    fence = json.loads(path.read_text())["geoFence"]
-    message = f"geoFence.polygons ({len(fence['polygons'])}) were left out: only the mission is read"
-    assert message in read_plan(path).repairs

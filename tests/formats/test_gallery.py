@@ -14,10 +14,12 @@ import pytest
 
 import gcs_windplan as gw
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
-from gcs_windplan.mission import Command, Mission
+from gcs_windplan.mission import Command, Mission, fence_items, rally_items
 from gcs_windplan.planner import Plan
+from tests.oracles.fences import breaches
 
 MISSIONS = sorted((Path(__file__).resolve().parents[2] / "missions").glob("*.yaml"))
+FENCED = [path for path in MISSIONS if "fence: true" in path.read_text()]
 one_millimetre = 1e-3
 
 
@@ -79,7 +81,7 @@ class TestGallery:
     ):
         mission = gw.mission_of(planned(path))
         sheet, plan = tmp_path / "m.waypoints", tmp_path / "m.plan"
-        write_waypoints(mission, sheet)
+        write_waypoints(mission.without_fence(), sheet)
         write_plan(mission, plan)
         ours = [_row(item) for item in mission.items]
         for read in (read_waypoints(sheet), read_plan(plan)):
@@ -87,9 +89,32 @@ class TestGallery:
             assert _agree(ours, [_row(item) for item in read.mission.items])
         assert _agree(ours, [_their_row(w.command, w.frame, w, w.x, w.y, w.z) for w in mavwp_load(sheet)[1:]])
         by_planner = mission_raw.import_mission_planner_mission(str(sheet)).mission_items[1:]
-        by_ground_control = mission_raw.import_qgroundcontrol_mission(str(plan)).mission_items
-        for theirs in (by_planner, by_ground_control):
+        by_ground_control = mission_raw.import_qgroundcontrol_mission(str(plan))
+        for theirs in (by_planner, by_ground_control.mission_items):
             assert _agree(ours, [_their_row(w.command, w.frame, w, w.x / 1e7, w.y / 1e7, w.z) for w in theirs])
+        back = read_plan(plan).mission
+        for items, read, imported in (
+            (fence_items(mission.fence), fence_items(back.fence), by_ground_control.geofence_items),
+            (rally_items(mission.rally), rally_items(back.rally), by_ground_control.rally_items),
+        ):
+            assert _agree([_row(item) for item in items], [_row(item) for item in read])
+            theirs = [_their_row(w.command, w.frame, w, w.x / 1e7, w.y / 1e7, w.z) for w in imported]
+            assert _agree([_row(item) for item in items], theirs)
+
+
+@pytest.mark.parametrize("path", FENCED, ids=lambda path: path.stem)
+def test_a_route_keeps_to_its_own_fence(path: Path):
+    """Along every leg and at the rally points, as the autopilots themselves test the uploaded items."""
+    plan = planned(path)
+    mission = gw.mission_of(plan)
+    fence = fence_items(mission.fence)
+    assert fence
+    points = np.array([(w.east, w.north) for w in plan.waypoints])
+    share = np.linspace(0, 1, 400)[:, None]
+    flown = np.concatenate([a + share * (b - a) for a, b in pairwise(points)])
+    places = list(zip(*plan.request.frame.to_geographic(flown), strict=True))
+    places += [(rally.point.latitude_deg, rally.point.longitude_deg) for rally in mission.rally]
+    assert not [(place, broken) for place in places if (broken := breaches(fence, *place))]
 
 
 def _row(item) -> tuple[float, ...]:
@@ -113,3 +138,22 @@ def test_the_gallery_is_whole():
     names = {path.stem for path in MISSIONS}
     assert names >= {"paper_case1", "paper_case2", "paper_case3", "jacksboro", "village", "keep_out", "inspection"}
     assert isinstance(gw.mission_of(planned(MISSIONS[0])), Mission)
+
+
+def test_a_mission_of_the_gallery_has_a_fence_and_rally_points():
+    """Areas with `fence: true` and no other; rally points at whole metres above home, not below what was planned."""
+    plan = planned(next(path for path in MISSIONS if path.stem == "keep_out"))
+    mission = gw.mission_of(plan)
+    assert mission.fence is not None
+    assert [(len(p.corners), p.inclusion) for p in mission.fence.polygons] == [(5, False), (4, True)]
+    assert [(c.radius, c.inclusion) for c in mission.fence.circles] == [(350.0, False)]
+    terrain = plan.request.terrain
+    for rally, site in zip(mission.rally, plan.request.rally, strict=True):
+        ground = float(terrain.heights_at(np.array([[site.east, site.north]]))[0])
+        planned_height = ground + 200 * 0.3048 - mission.home.altitude
+        assert rally.altitude == math.ceil(planned_height)
+    assert len(mission.rally) == 2
+    inside = mission.fence.polygons[0].corners  # the middle of the reserve is where the fence must speak up
+    middle = [sum(getattr(c, name) for c in inside) / 5 for name in ("latitude_deg", "longitude_deg")]
+    assert breaches(fence_items(mission.fence), *middle) == ["polygon at item 0"]
+    assert "the fence holds 'permitted area' in plan only" in " ".join(plan.notes)

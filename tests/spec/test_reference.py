@@ -35,7 +35,9 @@ def test_every_field_stands_in_the_reference() -> None:
     assert "| `airspeed` | speed [m/s], between 0.1 and 150 | required | cruise speed" in reference
     assert "| `clearance` | length [m], above 0 and at most 300000 | `30 m` |" in reference
     assert "| `from` | angle [deg], between 0 and 360 | required |" in reference
-    assert "## start, goal, via[]" in reference
+    assert "## start, goal, via[], fence.return_point, rally[]" in reference
+    assert "## keep_out[].circle, keep_in[].circle" in reference
+    assert "| `fence` | `true`, `false` | `false` | whether the autopilot's own fence holds it too" in reference
     assert "- speed: m/s, km/h, kt, mph, ft/s, ft/min" in reference
 
 
@@ -57,6 +59,8 @@ def test_the_json_schema_allows_units_and_short_forms() -> None:
     assert kinds["PolygonModel"]["anyOf"][0]["type"] == "array"
     assert kinds["TerrainModel"]["properties"]["dem"]["anyOf"][0]["type"] == "string"
     assert kinds["WindModel"]["oneOf"][0] == {"required": ["calm"]}
+    assert kinds["AreaModel"]["oneOf"] == [{"required": ["polygon"]}, {"required": ["circle"]}]
+    assert kinds["AreaModel"]["properties"]["fence"]["default"] is False
     assert "from" in kinds["ConstantWindModel"]["required"]
     assert set(schema["properties"]) == set(known_fields(MissionModel))
 
