@@ -6,8 +6,11 @@ WindplanError
 │   ├── TerrainError      a DEM or mesh that cannot be read or does not cover the place
 │   ├── WindError         a wind that cannot be read, has gaps or does not cover the place
 │   ├── FormatError       a .waypoints or .plan file
+│   ├── AddressError      a link's address that is wrong or in use
 │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
-└── NoRouteError          all input is fine and yet no route exists: exit code 1
+├── NoRouteError          all input is fine and yet no route exists: exit code 1
+└── LinkError             the link is dead or nobody answers, so that what the vehicle holds is unknown: exit code 4
+    └── RefusedError      the vehicle said no: exit code 3
 """
 
 from __future__ import annotations
@@ -70,6 +73,10 @@ class FormatError(InputError):
     """A mission in a ground station's format that cannot be read or written."""
 
 
+class AddressError(InputError):
+    """The address of a link that cannot be opened: of no known form, not this computer's, or in use."""
+
+
 class RequestError(InputError):
     """A request whose sites, limits and terrain contradict each other."""
 
@@ -83,3 +90,11 @@ class NoRouteError(WindplanError):
     def __init__(self, message: str, cuts: dict[str, int]) -> None:
         self.cuts = cuts
         super().__init__(message)
+
+
+class LinkError(WindplanError):
+    """The link is dead, or nobody answers on it."""
+
+
+class RefusedError(LinkError):
+    """The vehicle said no, or cannot do what was asked."""

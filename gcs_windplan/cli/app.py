@@ -10,20 +10,27 @@ from typing import Annotated
 
 import typer
 
-from gcs_windplan.cli import compare, plan, reproduce, schema
-from gcs_windplan.errors import InputError, NoRouteError
+from gcs_windplan.cli import clear, compare, diff, linking, plan, pull, push, reproduce, schema, vehicle
+from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError
 
 _EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
+_ALL_CODES = _EPILOG + " Verbs that talk to a vehicle: 3 the vehicle said no; 4 what it holds is unknown."
 
 app = typer.Typer(
     help="Drone missions that know the wind and the ground.",
-    epilog=_EPILOG,
+    epilog=_ALL_CODES,
     rich_markup_mode=None,
     add_completion=False,
     pretty_exceptions_enable=False,
     no_args_is_help=True,
 )
 app.command("plan", help=plan.HELP, epilog=_EPILOG)(plan.plan)
+app.command("push", help=push.HELP, epilog=linking.EPILOG)(push.push)
+app.command("pull", help=pull.HELP, epilog=linking.EPILOG)(pull.pull)
+app.command("diff", help=diff.HELP, epilog=diff.EPILOG)(diff.diff)
+app.command("clear", help=clear.HELP, epilog=linking.EPILOG)(clear.clear)
+app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
+app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
 app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
 app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
@@ -67,3 +74,6 @@ def main() -> None:
     except NoRouteError as error:
         typer.echo(f"error: {error}", err=True)
         sys.exit(1)
+    except LinkError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(3 if isinstance(error, RefusedError) else 4)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import math
 import os
-import socket
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,6 +13,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+
+from tests.mavsdk_peers import free_port, mavsdk_instances
 
 MISSIONS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "missions"
 
@@ -49,33 +50,15 @@ def _environment_kept() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def mavsdk_pair() -> Iterator[SimpleNamespace]:
     """A MAVSDK ground station (`gcs`) that has met a MAVSDK `autopilot`, as `system`, over loopback."""
-    mavsdk = importlib.import_module("mavsdk.mavsdk")
     component = importlib.import_module("mavsdk.component_type").ComponentType
-    log = importlib.import_module("mavsdk.logging")
-    log.log_subscribe(lambda *_: True)  # it would print
-    configurations = [
-        mavsdk.Configuration.create_with_component_type(kind)
-        for kind in (component.GROUND_STATION, component.AUTOPILOT)
-    ]
-    gcs, autopilot = (mavsdk.Mavsdk(configuration) for configuration in configurations)
-    try:
-        port = _free_port()
+    with mavsdk_instances("GROUND_STATION", "AUTOPILOT") as (gcs, autopilot):
+        port = free_port()
         assert gcs.add_any_connection(f"udpin://127.0.0.1:{port}") == 0
         assert autopilot.add_any_connection(f"udpout://127.0.0.1:{port}") == 0
         autopilot.server_component_by_type(component.AUTOPILOT)
         system = gcs.first_autopilot(10.0)
         assert system is not None, "the two MAVSDK instances did not meet within 10 s"
         yield SimpleNamespace(gcs=gcs, autopilot=autopilot, system=system)
-    finally:
-        for owner in (gcs, autopilot, *configurations):
-            owner.destroy()
-        log.log_unsubscribe()
-
-
-def _free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture(scope="session")

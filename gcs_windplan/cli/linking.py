@@ -1,0 +1,149 @@
+"""What the verbs that talk to a vehicle share: their options, the progress bar, and how they report."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+
+import typer
+
+if TYPE_CHECKING:
+    from gcs_windplan.link.peer import Peer
+    from gcs_windplan.link.session import Session, Watch
+    from gcs_windplan.link.verified import Part
+    from gcs_windplan.link.wire import MissionType
+
+EPILOG = (
+    "ADDRESS is udpin:HOST:PORT (listen; the way simulators and most autopilots call in), udpout:HOST:PORT, "
+    "tcp:HOST:PORT, tcpin:HOST:PORT or a serial DEVICE[:BAUD]. "
+    "Exit codes: 0 accepted; 1 no route exists (a mission file to be planned); 2 something handed in cannot be used "
+    "(address, port in use, key, file); 3 rejected: the vehicle said no, or holds something else; 4 unknown: nobody "
+    "there, no answer, interrupted."
+)
+
+System: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--sysid", min=1, max=255, metavar="N", help="The vehicle's system id, if several share the link."),
+]
+Component: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--compid", min=1, max=255, metavar="N", help="Its autopilot's component id; 1 on most."),
+]
+KeyFile: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--sign", metavar="KEYFILE", help="Sign (MAVLink 2): 64 hex digits, a passphrase, or 32 bytes."),
+]
+Timeout: TypeAlias = Annotated[
+    float | None,
+    typer.Option(min=0.1, metavar="SECONDS", help="End after so long in all; else 10 s for a vehicle to be heard."),
+]
+Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+
+EXIT_CODES = {"accepted": 0, "rejected": 3, "unknown": 4}
+
+
+@contextmanager
+def vehicle(
+    address: str, system: int | None, component: int | None, key_file: Path | None, timeout: float | None
+) -> Iterator[tuple[Session, Peer]]:
+    """A session at the address with the vehicle that it met."""
+    from gcs_windplan.link.session import open_session
+
+    with open_session(address, key_file=key_file, timeout=timeout) as session:
+        yield session, session.meet(system, component)
+
+
+@contextmanager
+def progress(label: str, quiet: bool) -> Iterator[Watch | None]:
+    """A bar on the terminal, None where standard error is none."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(label, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total or None)
+
+
+def note(text: str) -> None:
+    """Say something beside the result."""
+    typer.echo(f"note: {text}", err=True)
+
+
+def verdict_of(parts: Sequence[Part]) -> str:
+    """The verdict on all parts: unknown if one is, else rejected if one is."""
+    verdicts = {part.outcome.verdict for part in parts}
+    return next(verdict for verdict in ("unknown", "rejected", "accepted") if verdict in verdicts)
+
+
+def report(parts: Sequence[Part], skipped: Sequence[MissionType], peer: Peer, verb: str, as_json: bool) -> None:
+    """Print how each part ended, and leave with the exit code."""
+    verdict = verdict_of(parts)
+    code = EXIT_CODES[verdict]
+    if as_json:
+        described = [_described(part) for part in parts]
+        described += [{"type": kind, "outcome": "not sent"} for kind in skipped]
+        document = {"verb": verb, "vehicle": described_peer(peer), "outcome": verdict, "exit_code": code}
+        typer.echo(json.dumps({**document, "parts": described}, indent=2))
+    for part in parts:
+        _print(part, peer, as_json)
+    for kind in skipped:
+        typer.echo(f"error: {kind} not sent, because of that", err=True)
+    if code:
+        raise typer.Exit(code)
+
+
+def described_peer(peer: Peer) -> dict[str, Any]:
+    """The vehicle, for JSON."""
+    return {
+        "system": peer.ident.system,
+        "component": peer.ident.component,
+        "autopilot": peer.autopilot,
+        "type": peer.vehicle_type,
+        "mavlink": peer.version,
+    }
+
+
+def _described(part: Part) -> dict[str, Any]:
+    outcome, comparison = part.outcome, part.comparison
+    described: dict[str, Any] = {
+        "type": part.mission_type,
+        "outcome": outcome.verdict,
+        "reason": outcome.reason,
+        "message": outcome.message,
+        "code": outcome.code,
+        "seq": outcome.seq,
+        "parameter": outcome.parameter,
+        "items": len(part.items),
+        "seconds": round(part.seconds, 3),
+        "seconds_sending": round(part.sending, 3),
+        "notes": list(outcome.notes),
+    }
+    if comparison is not None:
+        described["differences"] = [str(difference) for difference in comparison.differences]
+        described["losses"] = [str(loss) for loss in comparison.losses]
+    return described
+
+
+def _print(part: Part, peer: Peer, as_json: bool) -> None:
+    outcome = part.outcome
+    if outcome.verdict != "accepted":
+        typer.echo(f"error: {part.mission_type} {outcome.verdict}: {outcome.message}", err=True)
+    elif not as_json:
+        took = f"{part.seconds:.2f} s" if part.seconds == part.sending else _times(part)
+        typer.echo(f"{part.mission_type} accepted by {peer}: {outcome.message} ({took})")
+        if part.comparison is not None and part.comparison.losses:
+            losses = part.comparison.losses
+            typer.echo(f"  {len(losses)} numbers as its firmware keeps them, such as {losses[0]}")
+    for line in outcome.notes:
+        note(line)
+
+
+def _times(part: Part) -> str:
+    return f"sent in {part.sending:.2f} s, {part.seconds:.2f} s with reading back"

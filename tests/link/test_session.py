@@ -1,0 +1,134 @@
+"""Meeting a vehicle, keeping the heartbeat going, and asking for home."""
+
+from __future__ import annotations
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from gcs_windplan.errors import InputError, LinkError
+from gcs_windplan.link.codec import Codec
+from gcs_windplan.link.meeting import LISTENING
+from gcs_windplan.link.session import OWN, Session
+
+from .autopilots import PX4, ArduPilot, Autopilot
+from .bench import bench
+from .simulation import SimulatedTransport, World
+
+
+def session_of(world: World, **options) -> Session:
+    return Session(SimulatedTransport(world), clock=world.clock, **options)
+
+
+@pytest.mark.parametrize(("kind", "autopilot"), [(ArduPilot, "ardupilot"), (PX4, "px4"), (Autopilot, None)])
+def test_the_heartbeat_tells_the_autopilot(kind, autopilot):
+    world = World()
+    vehicle = kind(world)
+    vehicle.type = mavlink.MAV_TYPE_FIXED_WING
+    peer = session_of(world).meet()
+    assert (peer.ident, peer.autopilot, peer.vehicle_type, peer.version) == ((1, 1), autopilot, "fixed-wing", 2)
+
+
+def test_a_heartbeat_a_second_while_it_waits_and_while_it_sends():
+    stand = bench("px4", count=20)
+    stand.vehicle.deaf("MISSION_ITEM_INT", 12, seq=4)
+    stand.push()
+    beats = stand.sent("HEARTBEAT")
+    elapsed = stand.world.now - 100.0
+    assert abs(len(beats) - elapsed) <= 2
+    assert {(beat.type, beat.autopilot) for beat in beats} == {(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID)}
+    assert {(beat.get_srcSystem(), beat.get_srcComponent()) for beat in beats} == {tuple(OWN)}
+
+
+def test_nobody():
+    world = World()
+    with pytest.raises(LinkError, match="no vehicle was heard"):
+        session_of(world).meet()
+    assert world.now == pytest.approx(110.0, abs=0.1)
+    with pytest.raises(LinkError, match="no vehicle was heard"):
+        session_of(world, timeout=2.0).meet()
+    assert world.now == pytest.approx(112.0, abs=0.1)
+
+
+@pytest.mark.parametrize("kind", [mavlink.MAV_TYPE_GCS, mavlink.MAV_TYPE_GIMBAL, mavlink.MAV_TYPE_CAMERA])
+def test_stations_gimbals_and_cameras_are_no_vehicles(kind):
+    world = World()
+    Autopilot(world, 1, 154).type = kind
+    with pytest.raises(LinkError):
+        session_of(world).meet()
+
+
+def test_it_listens_for_others_unless_one_is_named():
+    world = World()
+    ArduPilot(world)
+    start = world.now
+    session_of(world).meet()
+    assert world.now - start >= LISTENING
+    start = world.now
+    session_of(world).meet(1, 1)
+    assert world.now - start <= 1.1
+
+
+def test_several_vehicles():
+    world = World()
+    ArduPilot(world, 1)
+    PX4(world, 2)
+    PX4(world, 2, 2)
+    with pytest.raises(InputError, match=r"3 vehicles share the link \(ArduPilot 1/1, PX4 2/1, PX4 2/2\)"):
+        session_of(world).meet()
+    assert session_of(world).meet(1).autopilot == "ardupilot"
+    assert session_of(world).meet(2, 2).ident == (2, 2)
+    with pytest.raises(InputError, match="2 vehicles share"):
+        session_of(world).meet(2)
+    with pytest.raises(LinkError, match=r"only ArduPilot 1/1, PX4 2/1, PX4 2/2: check --sysid"):
+        session_of(world).meet(9)
+
+
+def test_ardupilot_is_waited_for_until_it_is_ready():
+    """It answers NO_SPACE in its first two seconds (measured on ArduCopter 4.7)."""
+    world = World()
+    vehicle = ArduPilot(world)
+    vehicle.reboot(0.5)
+    session = session_of(world)
+    session.meet(1, 1)
+    assert world.now - vehicle.booted >= 2.0
+    vehicle.status = mavlink.MAV_STATE_BOOT
+    start = world.now
+    session_of(world).meet(1, 1)  # it never says so: then it is tried all the same
+    assert 4.9 <= world.now - start <= 7
+
+
+def test_home_of_a_vehicle_that_tells_it():
+    world = World()
+    vehicle = PX4(world)
+    session = session_of(world)
+    peer = session.meet()
+    assert session.ask_home(peer) is None
+
+    def answer(message):
+        if message.get_type() == "COMMAND_LONG" and message.param1 == mavlink.MAVLINK_MSG_ID_HOME_POSITION:
+            place = (468134380, 98437720, 1560250, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
+            vehicle.send(mavlink.MAVLink_home_position_message(*place))
+        return [message]
+
+    vehicle.ears.append(answer)
+    home = session.ask_home(peer)
+    assert home is not None
+    assert (home.point.latitude_deg, home.point.longitude_deg, home.altitude) == (46.813438, 9.843772, 1560.25)
+
+
+def test_the_transport_is_closed():
+    world = World()
+    transport = SimulatedTransport(world)
+    with Session(transport, clock=world.clock):
+        pass
+    assert transport.closed
+
+
+def test_signed_sessions_sign_everything():
+    world = World()
+    key = bytes(range(32))
+    PX4(world, key=key)
+    session = session_of(world, key=key)
+    session.meet()
+    assert all(data[2] & 1 for _, data in session._transport.sent)
+    assert Codec(1, 1).decode(session._transport.sent[0][1])[0].get_type() == "HEARTBEAT"
