@@ -188,7 +188,7 @@ class _Stream(_Socket):
 
 
 class _Server(_Socket):
-    """TCP as the server of one caller after the other."""
+    """TCP as the server of one caller after the other. When one is lost, the next may be received after that."""
 
     def __init__(self, line: socket.socket, name: Any) -> None:
         super().__init__(line)
@@ -199,11 +199,19 @@ class _Server(_Socket):
 
     def send(self, data: bytes) -> None:
         if self._caller is not None:
-            _send_all(self._caller, data)
+            try:
+                _send_all(self._caller, data)
+            except LinkError:
+                self._let_go(self._caller)
+                raise
 
     def receive(self, timeout: float) -> bytes:
         if self._caller is not None:
-            return _from_stream(self._caller, timeout)
+            try:
+                return _from_stream(self._caller, timeout)
+            except LinkError:
+                self._let_go(self._caller)
+                raise
         if _readable(self._line, time.monotonic() + timeout):
             self._caller, _ = self._line.accept()
             _prepare(self._caller)
@@ -213,6 +221,10 @@ class _Server(_Socket):
         if self._caller is not None:
             self._caller.close()
         super().close()
+
+    def _let_go(self, caller: socket.socket) -> None:
+        caller.close()
+        self._caller = None
 
 
 def _prepare(line: socket.socket) -> None:

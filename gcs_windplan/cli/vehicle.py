@@ -1,0 +1,222 @@
+"""`gcs-windplan vehicle`: a stand-in vehicle to push missions to, and to watch flying."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from gcs_windplan.link.standin.vehicle import StandInOptions
+    from gcs_windplan.link.transport import Transport
+    from gcs_windplan.mission import Home
+    from gcs_windplan.request import Request
+    from gcs_windplan.vehicle import Autopilot
+    from gcs_windplan.wind.field import WindField
+
+HELP = (
+    "Play a vehicle: a stand-in, not a simulator. It keeps ArduCopter's or PX4's mission rules, answers what ground"
+    " stations ask, and moves along the uploaded mission in the wind, without dynamics and with a plain linear"
+    " battery. Ctrl-C ends it."
+)
+EPILOG = (
+    "Exit codes: 0 ended by Ctrl-C; 2 an option, file or address cannot be used; 4 the connection was lost. Try:"
+    " gcs-windplan vehicle --fly, and in another terminal gcs-windplan push FILE --to udpout:127.0.0.1:14550."
+)
+
+
+def vehicle(
+    listen: Annotated[
+        str,
+        typer.Option(
+            "--listen",
+            "--connect",
+            metavar="ADDRESS",
+            help="Where it is: udpin:HOST:PORT and tcpin:HOST:PORT wait for ground stations; udpout:HOST:PORT calls one"
+            " that listens, as simulators do; tcp:HOST:PORT; a serial DEVICE[:BAUD].",
+        ),
+    ] = "udpin:127.0.0.1:14550",
+    autopilot: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="ardupilot or px4: whose rules it keeps; default the mission file's."),
+    ] = None,
+    mission: Annotated[
+        Path | None,
+        typer.Option(metavar="MISSION.yaml", help="Fly in its wind, over its terrain, at its vehicle's airspeed."),
+    ] = None,
+    wind: Annotated[
+        str | None,
+        typer.Option(metavar="SPEED@FROM", help="A constant wind, such as 5@270 or '12 kt@300', in m/s and degrees."),
+    ] = None,
+    airspeed: Annotated[
+        str | None, typer.Option(metavar="SPEED", help="The most that it flies through the air; default 15 m/s.")
+    ] = None,
+    home: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LAT,LON,ALT",
+            help="Where it stands [deg, m above sea level]; default the mission file's start, or where the first"
+            " mission that is uploaded begins.",
+        ),
+    ] = None,
+    speedup: Annotated[
+        float, typer.Option(metavar="N", min=0.01, max=1000.0, help="Seconds of flight in one of the clock.")
+    ] = 1.0,
+    fly: Annotated[
+        bool, typer.Option("--fly", help="Arm and fly as soon as a mission was uploaded, without being told to.")
+    ] = False,
+    capacity: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=0, max=65535, help="Room for N items; default 718 (ArduPilot), 2000 (PX4)."),
+    ] = None,
+    sysid: Annotated[int, typer.Option(metavar="N", min=1, max=255, help="Its MAVLink system.")] = 1,
+    sign: Annotated[
+        Path | None,
+        typer.Option(metavar="KEYFILE", help="Sign what it says, and hear only what is signed with the same key."),
+    ] = None,
+    mavlink1: Annotated[
+        bool, typer.Option("--mavlink1", help="Speak MAVLink 1, which has no fences and rally points.")
+    ] = False,
+) -> None:
+    """Serve until interrupted."""
+    request, place = _request(mission), _home(home)
+    name = _autopilot(autopilot, request)
+    if request is not None and not request.vehicle.hovers:
+        typer.echo("note: the mission's vehicle is a fixed-wing; the stand-in flies as a multicopter")
+    field, speed = _wind(wind), _airspeed(airspeed)
+    from gcs_windplan.link.key import read_key
+    from gcs_windplan.link.transport import open_transport
+
+    key = read_key(sign) if sign is not None else None
+    transport = open_transport(listen)  # before anything slow: a wrong address is told at once
+    try:
+        from gcs_windplan.link.standin.rules import ServerOptions
+
+        server = ServerOptions(system=sysid, capacity=capacity, mavlink1=mavlink1)
+        options = _options(name, request, place, field, speed, server=server, speedup=speedup, fly=fly)
+        _serve(options, transport, listen, key)
+    except KeyboardInterrupt:
+        typer.echo("ended")
+    finally:
+        transport.close()
+
+
+def _serve(options: StandInOptions, transport: Transport, listen: str, key: bytes | None) -> None:
+    """Play the vehicle on a line; a TCP server waits for the next caller when one has gone."""
+    import time
+
+    from gcs_windplan.errors import LinkError
+    from gcs_windplan.link.codec import Codec
+    from gcs_windplan.link.standin.service import serve
+    from gcs_windplan.link.standin.vehicle import StandIn
+
+    began = time.monotonic()
+
+    def say(words: str) -> None:
+        typer.echo(f"{time.monotonic() - began:8.2f} s  {words}")
+
+    codec = Codec(options.server.system, options.server.component, key)
+    codec.version = 1 if options.server.mavlink1 else 2
+    vehicle = StandIn(options, time.monotonic(), say)
+    rules, system = {"ardupilot": "ArduCopter", "px4": "PX4"}[options.autopilot], options.server.system
+    say(f"a stand-in, no real vehicle and no simulator: system {system}, {rules}'s mission rules, {listen}")
+    home, wind = options.world.home, options.world.wind
+    say(f"it stands at {home.point}, {home.altitude:.1f} m; wind: {wind.name}; speed-up {options.speedup:g}")
+    while True:
+        try:
+            serve(vehicle, codec, transport, time.monotonic)
+        except LinkError as error:
+            if not listen.startswith("tcpin:"):
+                raise
+            say(f"{error}; it waits for the next one")
+
+
+def _options(
+    autopilot: Autopilot,
+    request: Request | None,
+    home: Home | None,
+    wind: WindField | None,
+    airspeed: float | None,
+    **told: Any,
+) -> StandInOptions:
+    """What the command line and the mission file make together."""
+    from dataclasses import replace
+
+    from gcs_windplan.link.standin.airframe import airframe_of
+    from gcs_windplan.link.standin.vehicle import StandInOptions
+    from gcs_windplan.link.standin.world import planned_world, simulator_world, world_at
+
+    if request is not None:
+        world = planned_world(request, home, wind)
+    else:
+        world = world_at(home, wind) if home is not None else simulator_world(autopilot, wind)
+    airframe = airframe_of(autopilot, request.vehicle if request is not None else None)
+    if airspeed is not None:
+        airframe = replace(airframe, airspeed=airspeed)
+    return StandInOptions(autopilot, airframe, world, **told)
+
+
+def _request(mission: Path | None) -> Request | None:
+    if mission is None:
+        return None
+    from gcs_windplan.cli.choices import read_request
+
+    return read_request(mission, None)
+
+
+def _autopilot(name: str | None, request: Request | None) -> Autopilot:
+    from gcs_windplan.errors import InputError, Problem
+
+    if name is None:
+        return request.vehicle.autopilot if request is not None else "ardupilot"
+    if name not in ("ardupilot", "px4"):
+        raise InputError(Problem(f"{name!r} is none of ardupilot, px4", "--autopilot"))
+    return name  # type: ignore[return-value]
+
+
+def _wind(text: str | None) -> WindField | None:
+    """A constant wind from SPEED@FROM."""
+    if text is None:
+        return None
+    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.spec.units import ANGLE, SPEED, read_quantity
+    from gcs_windplan.wind.analytic import ConstantWind
+
+    speed, at, direction = text.partition("@")
+    try:
+        if not at:
+            raise ValueError(f"{text!r} is no wind; write SPEED@FROM, for example 5@270")
+        return ConstantWind.from_direction(read_quantity(speed, SPEED), read_quantity(direction, ANGLE))
+    except (ValueError, InputError) as error:
+        raise InputError(Problem(str(error), "--wind")) from None
+
+
+def _airspeed(text: str | None) -> float | None:
+    if text is None:
+        return None
+    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.spec.values import AIRSPEED
+
+    try:
+        return AIRSPEED.read(text)
+    except ValueError as error:
+        raise InputError(Problem(str(error), "--airspeed")) from None
+
+
+def _home(text: str | None) -> Home | None:
+    """Home from LAT,LON,ALT."""
+    if text is None:
+        return None
+    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.geodesy import GeoPoint
+    from gcs_windplan.mission import Home
+
+    try:
+        latitude, longitude, altitude = (float(part) for part in text.split(","))
+        return Home(GeoPoint(latitude, longitude), altitude)
+    except ValueError:
+        message = f"{text!r} is no place; write LAT,LON,ALT, for example 47.3977,8.5456,488"
+        raise InputError(Problem(message, "--home")) from None
+    except InputError as error:
+        raise InputError(Problem(str(error), "--home")) from None

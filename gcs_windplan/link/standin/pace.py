@@ -1,0 +1,104 @@
+"""How a multicopter paces its legs: how long it takes to reach a speed, and how fast it goes around a corner.
+
+The law was fitted to 217 legs flown by ArduCopter 4.7 in its simulator (jerk-limited S-curves, corners rounded
+within the waypoint radius). Here it is put as constant accelerations and corner speeds that take the same time: a
+ramp to speed v takes `ramp_seconds(v)` in place of S-curves of that duration, and a corner is slowed down for by
+just what the fitted law says that it costs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from gcs_windplan.link.standin.airframe import Airframe
+
+Vector: TypeAlias = tuple[float, float, float]
+
+_JERK = 1.0  # [m/s³] WPNAV_JERK, ArduCopter's default
+_RISE = 0.3  # [s] fitted: half a ramp's time beyond what jerk and acceleration take
+SETTLE = 0.62  # [s] fitted: what a start from rest takes more
+_STRAIGHT = 1e-3  # [rad] a turn smaller than this is none
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How fast a leg is flown along its slope [m/s], and with how much acceleration [m/s²]."""
+
+    speed: float
+    acceleration: float
+
+
+def leg_pace(airframe: Airframe, level: float, climb: float, ground_speed: float) -> Pace:
+    """The pace of a leg that goes `level` [m] over ground and gains `climb` [m] at a commanded ground speed [m/s].
+
+    Climb and descent rates slow a steep leg; a short leg ends before the speed is reached.
+    """
+    length = math.hypot(level, climb)
+    if length == 0.0:
+        return Pace(ground_speed, airframe.acceleration)
+    along, rate = level / length, airframe.climb if climb > 0 else airframe.descent
+    steepness = abs(climb) / length
+    speed = min(ground_speed / along if along > 0 else math.inf, rate / steepness if steepness > 0 else math.inf)
+    acceleration = min(
+        airframe.acceleration / along if along > 0 else math.inf,
+        airframe.vertical_acceleration / steepness if steepness > 0 else math.inf,
+    )
+    speed = min(speed, peak_speed(length, acceleration))
+    return Pace(speed, speed / ramp_seconds(speed, acceleration))
+
+
+def ramp_seconds(speed: float, acceleration: float) -> float:
+    """How long it takes from rest to a speed [m/s] with a limit on acceleration [m/s²] and jerk."""
+    if speed >= acceleration * (acceleration / _JERK + _RISE):
+        return speed / acceleration + acceleration / _JERK + _RISE
+    reached = (-_RISE + math.sqrt(_RISE**2 + 4 * speed / _JERK)) / 2  # the acceleration reached before it falls again
+    return 2 * (reached / _JERK + _RISE)
+
+
+def peak_speed(length: float, acceleration: float) -> float:
+    """The highest speed [m/s] on a leg [m] from rest to rest: its two ramps fill the leg."""
+    slow, fast = 0.0, length / (2 * _RISE)
+    for _ in range(60):
+        middle = (slow + fast) / 2
+        if middle * ramp_seconds(middle, acceleration) <= length:
+            slow = middle
+        else:
+            fast = middle
+    return slow
+
+
+def corner_speed(pace: Pace, turn: float, radius: float) -> float:
+    """How fast a leg's pace goes around a corner [m/s] with a turn [rad], 0..π."""
+    if turn < _STRAIGHT:
+        return pace.speed
+    ramp = pace.speed / pace.acceleration
+    overlap = _overlap(radius / (2 * math.sin(turn / 2)))
+    lost = max(0.0, ramp / 2 - overlap) + SETTLE / 2 * math.sin(turn / 2) ** 2
+    return pace.speed * (1 - math.sqrt(min(1.0, 2 * lost / ramp)))
+
+
+def exit_speed(vectors: Sequence[Vector], paces: Sequence[Pace], radius: float) -> float:
+    """The speed [m/s] at which the first of some legs may end, so that the last of them can end at rest."""
+    speed = 0.0
+    for i in reversed(range(len(vectors) - 1)):
+        turn = turn_between(vectors[i], vectors[i + 1])
+        gained = math.sqrt(speed**2 + 2 * paces[i + 1].acceleration * math.hypot(*vectors[i + 1]))
+        speed = min(gained, corner_speed(paces[i], turn, radius), corner_speed(paces[i + 1], turn, radius))
+    return speed
+
+
+def turn_between(before: Vector, after: Vector) -> float:
+    """The turn from one direction to the next [rad], 0..π."""
+    cosine = sum(a * b for a, b in zip(before, after, strict=True)) / (math.hypot(*before) * math.hypot(*after))
+    return math.acos(max(-1.0, min(1.0, cosine)))
+
+
+def _overlap(distance: float) -> float:
+    """For how long [s] the ramps of two legs overlap when the corner may be cut at this distance [m]."""
+    overlap = 0.15 + math.cbrt(6 * distance)
+    if overlap <= 2.8:
+        return overlap
+    return 2.8 + (math.sqrt(12.25 + 5 * (distance - 3.13)) - 3.5) / 2.5
