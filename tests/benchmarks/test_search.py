@@ -10,8 +10,8 @@ SAME = 1e-9
 HEADING = "Search: 1000 x 1000 nodes, 8 neighbours, one core, the same optimum"
 SMALL = "Search: 100 x 100 nodes, 8 neighbours, one core, the same optimum"
 NOTE = (
-    "Query: the best of its repeats. Build: writing the edges out, which peers need; ours works them out on the fly. Memory:"
-    " the peak of the whole process with its libraries."
+    "Query: the best of its repeats. Build: writing the edges out, which peers need; ours works them out on the fly."
+    " Memory: the peak of the whole process with its libraries."
 )
 
 
