@@ -34,7 +34,14 @@ def ours(n: str, neighbours: str, way: str) -> Measured:
     return timed(lambda: _search(world, int(neighbours), way), list, 5 if int(n) < 2000 else 1)
 
 
-def _search(world: Square, neighbours: int, way: str) -> dict[str, float]:
+def bounded(n: str, neighbours: str, way: str, bound: str) -> Measured:
+    """The same with another lower bound: none (Dijkstra), h1 or h2."""
+    _search(square(30), 8, "up", bound)
+    world = square(int(n))
+    return timed(lambda: _search(world, int(neighbours), way, bound), list, 1)
+
+
+def _search(world: Square, neighbours: int, way: str, bound: str = "h2") -> dict[str, float]:
     from gcs_windplan.cost import CostChoice, LegCost
     from gcs_windplan.kernels.best_first import search_grid
     from gcs_windplan.veil.grid import grid_steps
@@ -45,10 +52,14 @@ def _search(world: Square, neighbours: int, way: str) -> dict[str, float]:
     setting = cost.setting(
         np.array([*np.array(divmod(goal, world.n))[::-1] * SPACING, world.heights[goal]]), world.winds
     )
+    if bound == "h1":
+        strongest = float(np.hypot(world.winds[:, 0], world.winds[:, 1]).max())
+        setting = setting._replace(ball_e=0.0, ball_n=0.0, ball_radius=strongest)
+    estimates = np.zeros(world.n**2) if bound == "none" else np.empty(0)
     legal = np.full(world.n**2, 0xFFFFFFFF, dtype=np.uint32)
     path, seconds, expanded, _ = search_grid(
         np.array([1, world.n, world.n]), np.zeros(2), SPACING, grid_steps(neighbours, layered=False), world.heights,
-        legal, world.winds, np.empty(0), cost.performance(), setting,
+        legal, world.winds, estimates, cost.performance(), setting,
         np.array([start]), np.zeros(1), np.zeros(1), np.array([goal]), np.zeros(1),
     )  # fmt: skip
     return {"cost": seconds, "expanded": expanded, "nodes": len(path)}
@@ -161,7 +172,17 @@ def embree_legs(length: str) -> Measured:
 
 JOBS: dict[str, Callable[..., Measured]] = {
     job.__name__: job
-    for job in (imports, ours, scipy_dijkstra, rustworkx_dijkstra, networkx_dijkstra, plan, our_legs, embree_legs)
+    for job in (
+        imports,
+        ours,
+        bounded,
+        scipy_dijkstra,
+        rustworkx_dijkstra,
+        networkx_dijkstra,
+        plan,
+        our_legs,
+        embree_legs,
+    )
 }
 
 if __name__ == "__main__":

@@ -29,9 +29,11 @@ class Square:
         return np.column_stack([column * SPACING, row * SPACING, self.heights])
 
     def ends(self, way: str) -> tuple[int, int]:
-        """Start and goal near two corners: with the wind (down) or against it (up)."""
+        """Start and goal near two corners: with the wind (down), against it (up) or across it."""
         inset = self.n // 20
         first = inset * self.n + inset
+        if way == "across":
+            return inset * self.n + self.n - 1 - inset, (self.n - 1 - inset) * self.n + inset
         ends = first, self.n**2 - 1 - first
         return ends if way == "down" else ends[::-1]
 
