@@ -133,8 +133,10 @@ class LegCost:
 
 def enclosing_ball(winds: FloatArray) -> tuple[FloatArray, float]:
     """A disc (centre (2,), radius [m/s]) around all winds (n, 2 or more) about the middle of their box, but NaN."""
-    known = winds[~np.isnan(winds[:, 0]), :2]
-    if len(known) == 0:
+    if len(winds) == 0 or np.isnan(winds[:, 0]).all():
         return np.zeros(2), 0.0
-    centre = (known.min(axis=0) + known.max(axis=0)) / 2
-    return centre, float(np.sqrt(((known - centre) ** 2).sum(axis=1).max()))
+    east, north = winds[:, 0], winds[:, 1]
+    centre = np.array([(np.fmin.reduce(axis) + np.fmax.reduce(axis)) / 2 for axis in (east, north)])
+    squares = (east - centre[0]) ** 2
+    squares += (north - centre[1]) ** 2
+    return centre, math.sqrt(np.fmax.reduce(squares))
