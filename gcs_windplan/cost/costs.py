@@ -20,7 +20,7 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost.sampling import integrate, performance_of
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import best_first as kernel
-from gcs_windplan.kernels.triangle import mean_angles
+from gcs_windplan.kernels.triangle import Performance, mean_angles
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
@@ -87,22 +87,25 @@ class LegCost:
         """The cost of a polyline (n, 3)."""
         return float(np.sum(self.of_legs(points[:-1], points[1:])))
 
-    def setting(self, goal: FloatArray, winds: FloatArray) -> FloatArray:
+    def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (n, 3)."""
-        setting = np.zeros(kernel.SETTINGS)
-        setting[kernel.CODE] = _CODES[self.choice.name]
-        setting[kernel.ANGLE_WEIGHT] = self.choice.angle
-        setting[kernel.DISTANCE_WEIGHT] = self.choice.distance
-        setting[kernel.STRAIGHT] = self.straight
-        setting[kernel.GOAL_E : kernel.GOAL_Z + 1] = goal
         centre, radius = enclosing_ball(winds)
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.max(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
-        setting[kernel.BALL_E : kernel.BALL_N + 1] = centre
-        setting[kernel.BALL_RADIUS] = radius
-        setting[kernel.BALL_UP] = np.max(winds[:, 2], initial=0.0)
-        setting[kernel.BALL_DOWN] = np.max(-winds[:, 2], initial=0.0)
-        return setting
+        return kernel.Setting(
+            code=_CODES[self.choice.name],
+            goal_e=float(goal[0]),
+            goal_n=float(goal[1]),
+            goal_z=float(goal[2]),
+            angle_weight=float(self.choice.angle),
+            distance_weight=float(self.choice.distance),
+            straight=float(self.straight),
+            ball_e=float(centre[0]),
+            ball_n=float(centre[1]),
+            ball_radius=radius,
+            ball_up=float(np.max(winds[:, 2], initial=0.0)),
+            ball_down=float(np.max(-winds[:, 2], initial=0.0)),
+        )
 
     def estimates(self, points: FloatArray, goal: FloatArray) -> FloatArray:
         """The estimates from nodes (n, 3) to the goal (3,) where the kernels have none of their own, else empty.
@@ -123,15 +126,17 @@ class LegCost:
             estimates[begin + known] = mean_angles(np.ascontiguousarray(vectors), winds)
         return estimates
 
-    def performance(self) -> FloatArray:
+    def performance(self) -> Performance:
         """The vehicle as the kernels take it."""
         return performance_of(self.vehicle)
 
 
 def enclosing_ball(winds: FloatArray) -> tuple[FloatArray, float]:
     """A disc (centre (2,), radius [m/s]) around all winds (n, 2 or more) about the middle of their box, but NaN."""
-    known = winds[~np.isnan(winds[:, 0]), :2]
-    if len(known) == 0:
+    if len(winds) == 0 or np.isnan(winds[:, 0]).all():
         return np.zeros(2), 0.0
-    centre = (known.min(axis=0) + known.max(axis=0)) / 2
-    return centre, float(np.sqrt(((known - centre) ** 2).sum(axis=1).max()))
+    east, north = winds[:, 0], winds[:, 1]
+    centre = np.array([(np.fmin.reduce(axis) + np.fmax.reduce(axis)) / 2 for axis in (east, north)])
+    squares = (east - centre[0]) ** 2
+    squares += (north - centre[1]) ** 2
+    return centre, math.sqrt(np.fmax.reduce(squares))

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, integrate_legs
+from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, Performance, integrate_legs
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
@@ -38,10 +38,11 @@ class LegIntegrals:
     across: FloatArray
 
 
-def performance_of(vehicle: Vehicle) -> FloatArray:
-    """The vehicle as the kernels take it, shape (5,)."""
+def performance_of(vehicle: Vehicle) -> Performance:
+    """The vehicle as the kernels take it."""
     model = PAPER if vehicle.speed_model == "paper" else TRIANGLE
-    return np.array([model, vehicle.airspeed, vehicle.climb, vehicle.descent, float(vehicle.hovers)])
+    airspeed, climb, descent = float(vehicle.airspeed), float(vehicle.climb), float(vehicle.descent)
+    return Performance(model, airspeed, climb, descent, float(vehicle.hovers))
 
 
 def integrate(

@@ -3,39 +3,44 @@
 Both kernels are one textbook A* with a closed list and a binary heap with lazy deletion. With a consistent lower bound
 that is optimal; with the paper's heuristics, which are none, it is what the paper runs.
 
-`setting` is an array of floats, made by `search/`: see the indices below. Edges take the wind as linear between their
-two nodes. Where both ends can be flown, so can all between: the winds in which a track is flyable are a convex set.
+Edges take the wind as linear between their two nodes. Where both ends can be flown, so can all between: the winds in
+which a track is flyable are a convex set.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
-from gcs_windplan.kernels.triangle import PAPER, leg_seconds, wind_angle
+from gcs_windplan.kernels.triangle import PAPER, Performance, leg_seconds, wind_angle
 
-DISTANCE, ANGLE, HYBRID, TIME = 0, 1, 2, 3
-
-# indices into `setting`
-CODE = 0  # one of the four above
-ANGLE_WEIGHT, DISTANCE_WEIGHT, STRAIGHT = 1, 2, 3  # hybrid (11); STRAIGHT = d(start, goal) [m]
-GOAL_E, GOAL_N, GOAL_Z = 4, 5, 6  # [m]
-BALL_E, BALL_N, BALL_RADIUS, BALL_UP, BALL_DOWN = (
-    7,
-    8,
-    9,
-    10,
-    11,
-)  # all winds lie in it [m/s]; strongest up and down
-SETTINGS = 12
+DISTANCE, ANGLE, HYBRID, TIME = 0.0, 1.0, 2.0, 3.0
 
 
-@numba.njit(error_model="numpy")
+class Setting(NamedTuple):
+    """What a search minimises, and where to."""
+
+    code: float  # one of the four above
+    goal_e: float  # [m], as are the next two
+    goal_n: float
+    goal_z: float
+    angle_weight: float = 0.0  # hybrid (11)
+    distance_weight: float = 0.0
+    straight: float = 1.0  # from start to goal [m]
+    ball_e: float = 0.0  # all winds lie in a ball about this one [m/s]
+    ball_n: float = 0.0
+    ball_radius: float = 0.0
+    ball_up: float = 0.0  # the strongest up-draught and down-draught [m/s]
+    ball_down: float = 0.0
+
+
+@numba.njit(error_model="numpy", forceinline=True)
 def edge_cost(
-    performance: FloatArray, setting: FloatArray,
+    performance: Performance, setting: Setting,
     level: float, east: float, north: float, climb: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
@@ -49,7 +54,7 @@ def edge_cost(
     if outset == math.inf:
         return outset
     seconds: float = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
-    code = setting[CODE]
+    code = setting.code
     if code == TIME or seconds == math.inf:
         return seconds
     if code == DISTANCE:
@@ -57,13 +62,13 @@ def edge_cost(
     angle: float = wind_angle(level * east, level * north, climb, be, bn, bu)
     if code == ANGLE:
         return angle
-    weight: float = setting[ANGLE_WEIGHT]
+    weight: float = setting.angle_weight
     return weight * angle / math.pi
 
 
 @numba.njit(cache=True, error_model="numpy")
 def edge_between(
-    performance: FloatArray, setting: FloatArray,
+    performance: Performance, setting: Setting,
     de: float, dn: float, dz: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
@@ -77,8 +82,8 @@ def edge_between(
     return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
 
 
-@numba.njit(cache=True, error_model="numpy")
-def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, z: float) -> float:
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def remaining(performance: Performance, setting: Setting, e: float, n: float, z: float) -> float:
     """The estimate from a place to the goal; for distance and time a consistent lower bound.
 
     Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with
@@ -86,31 +91,31 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
     does so only for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball
     on 0.
     """
-    de, dn, dz = setting[GOAL_E] - e, setting[GOAL_N] - n, setting[GOAL_Z] - z
+    de, dn, dz = setting.goal_e - e, setting.goal_n - n, setting.goal_z - z
     level2 = de * de + dn * dn
-    code = setting[CODE]
+    code = setting.code
     if code != TIME:
         distance = math.sqrt(level2 + dz * dz)
         if code == DISTANCE:
             return distance
         if code == HYBRID:
-            share: float = setting[DISTANCE_WEIGHT] * distance / max(distance, setting[STRAIGHT])
+            share: float = setting.distance_weight * distance / max(distance, setting.straight)
             return share
         return 0.0
     vertical = 0.0
     if dz > 0.0:
-        vertical = dz / (performance[2] + setting[BALL_UP])
+        vertical = dz / (performance.climb + setting.ball_up)
     elif dz < 0.0:
-        vertical = -dz / (performance[3] + setting[BALL_DOWN])
+        vertical = -dz / (performance.descent + setting.ball_down)
     if level2 == 0.0:
         return vertical
     level = math.sqrt(level2)
-    airspeed = performance[1] + setting[BALL_RADIUS]
-    along = (setting[BALL_E] * de + setting[BALL_N] * dn) / level
-    if performance[0] == PAPER:
+    airspeed = performance.airspeed + setting.ball_radius
+    along = (setting.ball_e * de + setting.ball_n * dn) / level
+    if performance.model == PAPER:
         speed = airspeed + along
     else:
-        cross = (setting[BALL_N] * de - setting[BALL_E] * dn) / level
+        cross = (setting.ball_n * de - setting.ball_e * dn) / level
         rest = airspeed * airspeed - cross * cross
         if rest < 0.0:
             return math.inf
@@ -121,7 +126,7 @@ def remaining(performance: FloatArray, setting: FloatArray, e: float, n: float, 
     return seconds
 
 
-@numba.njit(error_model="numpy")
+@numba.njit(error_model="numpy", forceinline=True)
 def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
     """Put a node into the 4-ary heap of `size` entries; there must be room for one more."""
     hole = size
@@ -136,7 +141,7 @@ def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -
     nodes[hole] = node
 
 
-@numba.njit(error_model="numpy")
+@numba.njit(error_model="numpy", forceinline=True)
 def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     """Drop the first of `size` entries; the last one sinks from the top."""
     last = size - 1
@@ -159,7 +164,7 @@ def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     nodes[hole] = node
 
 
-@numba.njit(error_model="numpy")
+@numba.njit(error_model="numpy", forceinline=True)
 def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, IntArray]:
     """The heap's arrays, twice as long if `needed` entries do not fit."""
     if needed <= keys.size:
@@ -176,7 +181,7 @@ def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, I
 def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
-    performance: FloatArray, setting: FloatArray,
+    performance: Performance, setting: Setting,
     seeds: IntArray, seed_costs: FloatArray, seed_keys: FloatArray, targets: IntArray, target_costs: FloatArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a grid of layers, rows (to the north) and columns (to the east).
@@ -194,9 +199,11 @@ def search_grid(
     half = steps.shape[0] // 2
     n = heights.size
     jumps = np.empty(2 * half, dtype=np.int64)
+    reach = 0  # of the longest step, in rows or columns
     tracks = np.zeros((2 * half, 3))  # level length, unit track east and north
     for k in range(2 * half):
         up, north, east = steps[k, 0], steps[k, 1], steps[k, 2]
+        reach = max(reach, abs(north), abs(east))
         jumps[k] = (up * rows + north) * columns + east
         cells = math.sqrt(north * north + east * east)
         if cells > 0.0:
@@ -237,12 +244,14 @@ def search_grid(
         layer, row, column = node // (rows * columns), (node // columns) % rows, node % columns
         ae, an, au = winds[node, 0], winds[node, 1], winds[node, 2]
         keys, nodes = _room(keys, nodes, size + 2 * half)
+        inside = layers == 1 and reach <= row < rows - reach and reach <= column < columns - reach
         for k in range(2 * half):
             to_layer, to_row, to_column = layer + steps[k, 0], row + steps[k, 1], column + steps[k, 2]
-            if to_layer < 0 or to_layer >= layers or to_row < 0 or to_row >= rows:
-                continue
-            if to_column < 0 or to_column >= columns:
-                continue
+            if not inside:
+                if to_layer < 0 or to_layer >= layers or to_row < 0 or to_row >= rows:
+                    continue
+                if to_column < 0 or to_column >= columns:
+                    continue
             to = node + jumps[k]
             if closed[to] & 1:
                 continue
@@ -287,7 +296,7 @@ def search_grid(
 @numba.njit(cache=True, error_model="numpy")
 def search_csr(
     first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
-    performance: FloatArray, setting: FloatArray, start: int, goal: int,
+    performance: Performance, setting: Setting, start: int, goal: int,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
 

@@ -32,7 +32,7 @@ _EDGE = 1e-6  # [cells] a place that far outside counts as on the edge: rounding
 _BOX = 1 + 1e-9
 
 # Divisors are checked where they may be 0; Numba's own checks would cost up to half of the speed.
-_kernel = numba.njit(cache=True, error_model="numpy")
+_kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
 # Pieces are called by kernels alone; the wrappers for other callers would take a seventh of the time to compile.
 _BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _piece = numba.njit(error_model="numpy", **_BARE)

@@ -9,7 +9,7 @@ from gcs_windplan.arrays import FloatArray
 
 # Every axis and column ascends strictly, so no divisor is 0. The model is that of `heightfield`: what Numba compiles
 # for one of them (min, max, empty) serves the other.
-_kernel = numba.njit(cache=True, error_model="numpy")
+_kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
 
 
 @_kernel

@@ -9,14 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
+from gcs_windplan.cores import spread
 from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.kernels.best_first import edge_between, remaining, search_csr, search_grid
+from gcs_windplan.kernels.best_first import Setting, edge_between, remaining, search_csr, search_grid
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
 from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
 from gcs_windplan.wind.field import WindField
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
+_BATCH = 100_000  # nodes whose wind is sampled at a time
 _MOST_EXPLAINED = 200_000  # reached nodes whose legs are judged again to explain a failure
 _CUT_BY_WIND = "wind (too strong for the vehicle, or not known that high)"
 _ADVICE = {
@@ -53,9 +55,15 @@ class WindyVeil:
 def blow(veil: GridVeil | PrmVeil, wind: WindField) -> WindyVeil:
     """Sample the wind at all nodes of a veil."""
     points = veil.points
-    known = np.isfinite(points[:, 2])
     winds = np.zeros_like(points)
-    winds[known] = wind.at(points[known])
+
+    def sample(begin: int) -> None:
+        part = slice(begin, begin + _BATCH)
+        known = np.isfinite(points[part, 2])
+        winds[part][known] = wind.at(points[part][known])
+
+    for _ in spread(sample, range(0, len(points), _BATCH)):
+        pass
     return WindyVeil(veil, points, winds)
 
 
@@ -104,7 +112,7 @@ def _search_grid(
 
 
 def _joins(
-    windy: WindyVeil, cost: LegCost, setting: FloatArray, site: FloatArray, air: FloatArray, outward: bool
+    windy: WindyVeil, cost: LegCost, setting: Setting, site: FloatArray, air: FloatArray, outward: bool
 ) -> tuple[IntArray, FloatArray]:
     """The nodes around a site with a clear, flyable leg from it (outward) or to it, and what that leg costs."""
     veil = windy.veil

@@ -15,16 +15,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from gcs_windplan.arrays import FlagArray, FloatArray, IntArray, MaskArray
+from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray, MaskArray
+from gcs_windplan.cores import spread
 from gcs_windplan.errors import InputError
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil.clearance import Clearance
 
-_BATCH = 1_000_000  # legs judged at a time, so that memory stays bounded
+_BATCH = 100_000  # legs judged at a time, so that memory stays bounded
 _REACH: Final = {8: 1, 16: 2, 32: 3}
 
 
@@ -111,34 +112,52 @@ def lay_grid(
     places = np.column_stack([east.ravel(), north.ravel()])
     heights = np.stack([clearance.lifted(places, layer)[:, 2].reshape(rows, columns) for layer in layers])
     steps = grid_steps(neighbours, layered=len(layers) > 1)
-    legal = np.zeros(heights.size, dtype=np.uint32)
-    for k in range(len(steps) // 2):
-        for nodes, starts, ends in _legs(corner, spacing, heights, steps[k]):
-            legal[nodes] |= (clearance.breaches(starts, ends) == 0).astype(np.uint32) << np.uint32(k)
-    return GridVeil(corner, spacing, heights, steps, legal, clearance)
+    legal = np.zeros(heights.shape, dtype=np.uint32)
+
+    def judge(strip: _Strip) -> tuple[_Strip, BoolArray]:
+        return strip, clearance.breaches(*_legs(corner, spacing, heights, strip)) == 0
+
+    for strip, clear in spread(judge, _strips(heights.shape, steps[: len(steps) // 2])):
+        part = legal[strip.layer, strip.rows, strip.columns]
+        part |= clear.reshape(part.shape).astype(np.uint32) << np.uint32(strip.number)
+    return GridVeil(corner, spacing, heights, steps, legal.ravel(), clearance)
 
 
-def _legs(
-    corner: FloatArray, spacing: float, heights: FloatArray, step: IntArray
-) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
-    """All legs of one step in batches: the nodes where they start, their starts and ends (n, 3)."""
-    layers, rows, columns = heights.shape
-    up, north, east = (int(move) for move in step)
-    row_from, row_to = max(0, -north), rows - max(0, north)
-    column_from, column_to = max(0, -east), columns - max(0, east)
-    if row_to <= row_from or column_to <= column_from:
-        return
-    batch = max(1, _BATCH // (column_to - column_from))
-    cs = np.arange(column_from, column_to)
-    for layer in range(layers - up):
-        for row in range(row_from, row_to, batch):
-            rs = np.arange(row, min(row + batch, row_to))[:, None]
-            x, y = np.broadcast_arrays(corner[0] + cs * spacing, corner[1] + rs * spacing)
-            starts = np.stack([x, y, heights[layer, rs, cs]], axis=-1).reshape(-1, 3)
-            ends = np.stack(
-                [x + east * spacing, y + north * spacing, heights[layer + up, rs + north, cs + east]], axis=-1
-            ).reshape(-1, 3)
-            yield ((layer * rows + rs) * columns + cs).ravel(), starts, ends
+class _Strip(NamedTuple):
+    """The legs of one step, its number given, that start in some rows and columns of a layer."""
+
+    number: int
+    step: tuple[int, int, int]
+    layer: int
+    rows: slice
+    columns: slice
+
+
+def _strips(shape: tuple[int, ...], steps: IntArray) -> Iterator[_Strip]:
+    """All legs of all steps, in strips of bounded size."""
+    layers, rows, columns = shape
+    height = max(1, _BATCH // columns)
+    for number, (up, north, east) in enumerate(steps.tolist()):
+        end = rows - max(0, north)
+        within = slice(max(0, -east), columns - max(0, east))
+        if within.stop <= within.start:
+            continue
+        for layer in range(layers - up):
+            for first in range(max(0, -north), end, height):
+                yield _Strip(number, (up, north, east), layer, slice(first, min(first + height, end)), within)
+
+
+def _legs(corner: FloatArray, spacing: float, heights: FloatArray, strip: _Strip) -> tuple[FloatArray, FloatArray]:
+    """A strip's legs: their starts and ends, (n, 3) each."""
+    up, north, east = strip.step
+    rs = np.arange(strip.rows.start, strip.rows.stop)[:, None]
+    cs = np.arange(strip.columns.start, strip.columns.stop)
+    starts, ends = np.empty((2, len(rs), len(cs), 3))
+    starts[..., 0], starts[..., 1] = corner[0] + cs * spacing, corner[1] + rs * spacing
+    starts[..., 2] = heights[strip.layer, rs, cs]
+    ends[..., 0], ends[..., 1] = starts[..., 0] + east * spacing, starts[..., 1] + north * spacing
+    ends[..., 2] = heights[strip.layer + up, rs + north, cs + east]
+    return starts.reshape(-1, 3), ends.reshape(-1, 3)
 
 
 def breaches_around(veil: GridVeil, nodes: IntArray) -> tuple[IntArray, FlagArray]:

@@ -43,8 +43,7 @@ def test_slowness_equals_its_twin(vehicle, direction, wind):
 @given(vehicles, directions, st.tuples(speeds, speeds, st.just(0.0)), st.tuples(speeds, speeds, st.just(0.0)))
 def test_edge_time_equals_its_twin(vehicle, vector, a, b):
     expected = naive_edge_time(vehicle, np.array(vector) * 100, a, b)
-    setting = np.zeros(best_first.SETTINGS)
-    setting[best_first.CODE] = best_first.TIME
+    setting = best_first.Setting(best_first.TIME, 0.0, 0.0, 0.0)
     found = best_first.edge_between(performance_of(vehicle), setting, *(np.array(vector) * 100), *a, *b)
     assert found == pytest.approx(expected, rel=1e-9) or expected > 1e8
 
