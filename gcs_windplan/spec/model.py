@@ -82,7 +82,7 @@ class UniformModel(Section):
     spacing: PositiveLength | None = Field(
         default=None, description="between nodes; default: chosen from the distance to fly"
     )
-    neighbours: Literal[8, 16, 32] = Field(default=16, description="how many neighbours a node has")
+    neighbours: Literal[8, 16, 32, 64] = Field(default=16, description="how many neighbours a node has")
 
 
 class PrmModel(Section):

@@ -1,11 +1,14 @@
 """The uniform veil: a square grid of nodes, laid over the terrain once or in several layers.
 
-Seen from above, a node's neighbours among the 8, 16 or 32 nearest directions (one quarter shown, node at o):
+Seen from above, a node's neighbours in 8, 16, 32 or 64 directions (one quarter shown, node at o). Each set adds to the
+one before it the sums of two steps side by side. The directions then lie at most 45, 27, 18 or 14 degrees apart.
 
-    8:  . .    16: . 2 .   32: . 3 3 .
-        1 1        1 1 2       . 2 . 3
-        o 1        o 1 .       1 1 2 3
-                               o 1 . .
+    8:  . .    16: . 2 .   32: . 3 3 .   64: . . 4 4 . .
+        1 1        1 1 2       . 2 . 3       . 4 . 4 . .
+        o 1        o 1 .       1 1 2 3       . 3 3 . 4 4
+                               o 1 . .       . 2 . 3 . 4
+                                             1 1 2 3 4 .
+                                             o 1 . . . .
 
 To the layers above and below it has the node straight over it and that one's 8 neighbours.
 """
@@ -26,17 +29,18 @@ from gcs_windplan.terrain import Extent
 from gcs_windplan.veil.clearance import Clearance
 
 _BATCH = 100_000  # legs judged at a time, so that memory stays bounded
-_REACH: Final = {8: 1, 16: 2, 32: 3}
+NEIGHBOURS: Final = (8, 16, 32, 64)
 
 
 def grid_steps(neighbours: int, layered: bool) -> IntArray:
     """The moves in (layers, rows, columns), shape (2 m, 3); move k + m undoes move k."""
-    reach = _REACH.get(neighbours)
-    if reach is None:
-        raise InputError(f"{neighbours} neighbours are not offered, choose 8, 16 or 32")
-    span = range(-reach, reach + 1)
-    coprime = [(r, c) for r in span for c in span if math.gcd(r, c) == 1]
-    forward = [(0, r, c) for r, c in coprime if r > 0 or (r == 0 and c > 0)]
+    if neighbours not in NEIGHBOURS:
+        raise InputError(f"{neighbours} neighbours are not offered, choose 8, 16, 32 or 64")
+    around = [(0, 1), (1, 0), (0, -1), (-1, 0)]  # rows, columns; step by step around the node
+    while len(around) < neighbours:
+        after = [*around[1:], around[0]]
+        around = [step for (r, c), (s, d) in zip(around, after, strict=True) for step in ((r, c), (r + s, c + d))]
+    forward = [(0, r, c) for r, c in sorted(around) if r > 0 or (r == 0 and c > 0)]
     if layered:
         forward += [(1, r, c) for r in (-1, 0, 1) for c in (-1, 0, 1)]
     steps = np.array(forward, dtype=np.int64)
@@ -112,14 +116,15 @@ def lay_grid(
     places = np.column_stack([east.ravel(), north.ravel()])
     heights = np.stack([clearance.lifted(places, layer)[:, 2].reshape(rows, columns) for layer in layers])
     steps = grid_steps(neighbours, layered=len(layers) > 1)
-    legal = np.zeros(heights.shape, dtype=np.uint32)
+    bits = np.uint32 if len(steps) <= 2 * 32 else np.uint64
+    legal: MaskArray = np.zeros(heights.shape, dtype=bits)
 
     def judge(strip: _Strip) -> tuple[_Strip, BoolArray]:
         return strip, clearance.breaches(*_legs(corner, spacing, heights, strip)) == 0
 
     for strip, clear in spread(judge, _strips(heights.shape, steps[: len(steps) // 2])):
         part = legal[strip.layer, strip.rows, strip.columns]
-        part |= clear.reshape(part.shape).astype(np.uint32) << np.uint32(strip.number)
+        part |= np.left_shift(clear.reshape(part.shape), strip.number, dtype=bits)
     return GridVeil(corner, spacing, heights, steps, legal.ravel(), clearance)
 
 

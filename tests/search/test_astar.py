@@ -55,7 +55,7 @@ def _grid_legs(veil):
     return pairs[veil.clearance.breaches(points[pairs[:, 0]], points[pairs[:, 1]]) == 0]
 
 
-@pytest.mark.parametrize("neighbours", [8, 16, 32])
+@pytest.mark.parametrize("neighbours", [8, 16, 32, 64])
 @pytest.mark.parametrize("model", ["triangle", "paper"])
 @pytest.mark.parametrize("seed", range(4))
 def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
