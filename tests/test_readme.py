@@ -11,6 +11,10 @@ import gcs_windplan as gw
 from gcs_windplan.cli.tables import summary_lines
 from gcs_windplan.cost import COST_NAMES, CostChoice
 from gcs_windplan.errors import MissionFileError
+from gcs_windplan.reproduction.cases import CASES, make_rules, make_terrain, make_vehicle
+from gcs_windplan.reproduction.flying import SHAPED, fly_case, sites_of
+from gcs_windplan.reproduction.graphs import lay_uniform
+from gcs_windplan.reproduction.published import ANGLE, DISTANCE, HYBRID
 from gcs_windplan.spec import parse_mission
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,6 +43,21 @@ def test_the_figures_shown_are_the_programs():
         assert 60 * int(row[1]) + int(row[2]) == pytest.approx(plan.totals.seconds, rel=2e-3), plan
     assert re.search(r"^# Plan\('jacksboro', time: ", README, re.MULTILINE)
     assert summary_lines(by_time)[1].split("wind: ")[1] in README
+
+
+def test_the_papers_cases_shown_are_the_programs():
+    terrain = make_terrain()
+    rules = make_rules(terrain)
+    veil = lay_uniform(rules, sites_of(rules, CASES))
+    routes = [fly_case(case, veil, make_vehicle(), rules) for case in CASES]
+    for name, key in (("distance", str(DISTANCE)), ("angle", str(ANGLE)), ("hybrid", str(HYBRID)), ("time", SHAPED)):
+        row = re.search(
+            rf"^\| {name}.* \| [\d.-]+ / ([\d.]+) \| [\d.-]+ / ([\d.]+) \| [\d.-]+ / ([\d.]+) \|$", README, re.M
+        )
+        assert row is not None, name
+        assert [float(cell) for cell in row.groups()] == pytest.approx([r[key].seconds for r in routes], abs=0.011), (
+            name
+        )
 
 
 def test_the_errors_shown_are_the_programs():
