@@ -111,10 +111,16 @@ def _refuse_unflyable(parts: LegIntegrals) -> None:
     stopped = np.flatnonzero(~np.isfinite(parts.seconds))
     if len(stopped):
         i = int(stopped[0])
+        if not np.isfinite(parts.along[i] + parts.across[i]):
+            raise NoRouteError(
+                f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"
+                " wind is not known there. Use a finer graph, a max_height below that level, or a higher wind.",
+                {"wind": len(stopped)},
+            )
         raise NoRouteError(
             f"leg {i + 1} cannot be flown: the wind along it is {parts.along[i]:.1f} m/s along and"
-            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places or not known that high. Use a"
-            " finer graph, more airspeed, or a max_height below the wind's highest level.",
+            f" {parts.across[i]:.1f} m/s across in the mean, and stronger in places. Use a finer graph, more airspeed,"
+            " or another departure.",
             {"wind": len(stopped)},
         )
 

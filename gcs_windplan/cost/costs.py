@@ -11,13 +11,13 @@ measure shaping compares; it is not the number that A* adds up.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost.sampling import integrate, performance_of
+from gcs_windplan.cost.sampling import CloserWind, integrate, performance_of
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import best_first as kernel
 from gcs_windplan.kernels.triangle import Performance, mean_angles
@@ -87,11 +87,15 @@ class LegCost:
         """The cost of a polyline (n, 3)."""
         return float(np.sum(self.of_legs(points[:-1], points[1:])))
 
+    def closer(self, times: float) -> LegCost:
+        """The same cost, but the wind along a leg is looked at so many times more closely."""
+        return replace(self, wind=CloserWind(self.wind, times))
+
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (n, 3)."""
         centre, radius = enclosing_ball(winds)
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
-            centre, radius = np.zeros(2), float(np.max(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
+            centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
         return kernel.Setting(
             code=_CODES[self.choice.name],
             goal_e=float(goal[0]),
@@ -103,8 +107,8 @@ class LegCost:
             ball_e=float(centre[0]),
             ball_n=float(centre[1]),
             ball_radius=radius,
-            ball_up=float(np.max(winds[:, 2], initial=0.0)),
-            ball_down=float(np.max(-winds[:, 2], initial=0.0)),
+            ball_up=float(np.fmax.reduce(winds[:, 2], initial=0.0)),  # fmax: NaN where the wind is not known
+            ball_down=float(np.fmax.reduce(-winds[:, 2], initial=0.0)),
         )
 
     def estimates(self, points: FloatArray, goal: FloatArray) -> FloatArray:

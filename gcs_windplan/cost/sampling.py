@@ -38,6 +38,28 @@ class LegIntegrals:
     across: FloatArray
 
 
+@dataclass(frozen=True, slots=True)
+class CloserWind:
+    """A wind that asks to be sampled so many times more closely than it says itself."""
+
+    wind: WindField
+    times: float
+
+    @property
+    def name(self) -> str:
+        """The wind's own."""
+        return self.wind.name
+
+    @property
+    def resolution(self) -> float:
+        """Half of the spacing at which it is looked at [m]."""
+        return self.wind.resolution / self.times
+
+    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+        """The wind (n, 3) [m/s] at points (n, 3)."""
+        return self.wind.at(points, seconds)
+
+
 def performance_of(vehicle: Vehicle) -> Performance:
     """The vehicle as the kernels take it."""
     model = PAPER if vehicle.speed_model == "paper" else TRIANGLE

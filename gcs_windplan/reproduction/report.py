@@ -75,8 +75,8 @@ def write_report(terrain: Dem, setups: Sequence[Setup], tables: dict[str, Table]
         " start and goal of case 1.*\n",
         "## Flight times\n",
         tables["table_1"].markdown(),
-        f"![Routes in the three cases]({FIGURES[1]})\n\n*Figure 6. Least distance (red), least angle (green, dashed)"
-        " and least time (blue, dotted) on the uniform graph.*\n",
+        f"![Routes in the three cases]({FIGURES[1]})\n\n*Figure 6. Least distance (orange) and least angle (green,"
+        " dashed) on the uniform graph, and least time after shaping (blue, dotted).*\n",
         tables["table_1_other"].markdown(),
         tables["table_2"].markdown(),
         f"![Hybrid routes]({FIGURES[2]})\n\n*Figure 7. The hybrid cost in case 2 with either weight the larger one.*\n",
@@ -106,7 +106,7 @@ def _choices(terrain: Dem) -> str:
 
 - **Terrain**: {len(HILLS)} Gaussian hills up to {max(hill.height for hill in HILLS):g} mr high, four of them steep; the
   veil lies {VEIL_HEIGHT:g} mr above it.
-- **Ways**: {ways}. Case 1 begins in the jet and flies east, so that the wind always helps; those of cases 2 and 3 come
+- **Ways**: {ways}. Case 1 begins in the jet and flies east, so that the wind never hinders; those of cases 2 and 3 come
   from a sweep for the paper's effects near its digits.
 - **Graphs**: uniform with a spacing of {SPACING:g} mr and r_s of {EIGHT * SPACING:.2f} mr (the 8 nodes around); PRM
   with three quarters of the nodes and r_s of {ROADMAP * SPACING:.2f} mr, as random places need more neighbours to be

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import LegCost
 from gcs_windplan.shaping.relax import relax
 from gcs_windplan.shaping.shorten import shorten
 from gcs_windplan.veil import Clearance
+
+_CLOSER: Final = (1, 4, 16)  # times the wind's own sampling, one after the other, where that has missed something
+_CLOSEST: Final = 256  # times the same, for the comparison: finer than what vertices have moved under
+_ROUNDING: Final = 1e-9
 
 
 def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
@@ -15,6 +21,17 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
     Time and distance are measured along any route, so vertices may leave the graph. The paper's angle and hybrid are
     made for the graph's edges: a vertex that is free to follow them would stroll along the wind, away from the goal.
     Their routes are shortened only.
+
+    Where the wind jumps, a leg may pass through the bad side of the jump between two samples, and relaxing would
+    collect such legs. So the result is compared with the path under closer sampling, and relaxed under that if need be.
     """
     shortened = shorten(points, cost, clearance)
-    return relax(shortened, cost, clearance) if cost.choice.name in ("time", "distance") else shortened
+    if cost.choice.name not in ("time", "distance"):
+        return shortened
+    closest = cost.closer(_CLOSEST)
+    limit = closest.of_polyline(points) * (1 + _ROUNDING)
+    for times in _CLOSER:
+        relaxed = relax(shortened, cost.closer(times), clearance)
+        if closest.of_polyline(relaxed) <= limit:
+            return relaxed
+    return shortened if closest.of_polyline(shortened) <= limit else points

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -78,6 +79,38 @@ def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
     legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, 0), _site_legs(veil, goal, veil.size - 1)])
     joined = _dijkstra(points, windy.winds, legs, cost.choice, vehicle, 0, veil.size - 1)
     assert found.cost == pytest.approx(joined, rel=EXACT)
+
+
+@dataclass(frozen=True)
+class LowWind(WavyWind):
+    """Not known above a height, as above a forecast's highest level."""
+
+    top: float = 62.0
+
+    def at(self, points, seconds=0.0):
+        result = super().at(points, seconds)
+        result[points[:, 2] > self.top] = np.nan
+        return result
+
+
+@pytest.mark.parametrize("neighbours", [8, 16])
+@pytest.mark.parametrize("model", ["triangle", "paper"])
+@pytest.mark.parametrize("seed", range(4))
+def test_time_equals_dijkstra_where_the_wind_is_not_known_everywhere(neighbours, model, seed):
+    """Nodes above a forecast's top must not disturb the bound, on a grid and on a roadmap."""
+    dem = rough_dem(seed, relief=30.0)
+    wind, vehicle = LowWind(seed, strength=6.0, rising=0.8), Vehicle(9.0, speed_model=model)
+    veil = lay_grid(rules_over(dem), AREA, 180.0, (25.0, 45.0), neighbours)
+    windy = blow(veil, wind)
+    known = np.flatnonzero(np.isfinite(windy.winds[:, 0]))
+    assert len(known) < veil.size
+    first, last = int(known[0]), int(known[-1])
+    start, goal = windy.points[first], windy.points[last]
+    cost = LegCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
+    legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, first), _site_legs(veil, goal, last)])
+    expected = _dijkstra(windy.points, np.nan_to_num(windy.winds, nan=99.0), legs, cost.choice, vehicle, first, last)
+    assert math.isfinite(expected)
+    assert find_path(windy, cost, start, goal).cost == pytest.approx(expected, rel=EXACT)
 
 
 def _site_legs(veil, site, node: int):
