@@ -1,5 +1,53 @@
-"""The command line."""
+"""The command line.
 
-from gcs_windplan.cli.app import main
+Nothing is imported here that takes time: an interruption while the rest is loaded must end in a line, too.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from types import FrameType
 
 __all__ = ["main"]
+
+_LINK_VERBS = ("push", "pull", "clear")
+_ONE_PRESS = 1.0  # [s] in which further interruptions are taken for the same one
+_interrupted_at = -_ONE_PRESS
+
+
+def main() -> None:
+    """Run the command line and exit with its code; Ctrl-C ends in a line and a code of its own."""
+    verb = next((word for word in sys.argv[1:] if not word.startswith("-")), "")
+    try:
+        _listen(verb)
+        from gcs_windplan.cli.app import run
+
+        run()
+    except KeyboardInterrupt:
+        code = 4 if verb in _LINK_VERBS else 0 if verb == "vehicle" else 130
+        print("interrupted", file=sys.stderr)
+        if verb in _LINK_VERBS and "--json" in sys.argv:
+            print(f'{{"verb": "{verb}", "outcome": "unknown", "exit_code": {code}, "error": "interrupted"}}')
+        sys.exit(code)
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is _interrupt:
+                signal.signal(number, signal.SIG_IGN)  # the code is settled
+
+
+def _listen(verb: str) -> None:
+    """Take SIGINT, and where a vehicle is to be told SIGTERM, for an interruption; once a press."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupt)
+    if verb in (*_LINK_VERBS, "vehicle"):
+        signal.signal(signal.SIGTERM, _interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    global _interrupted_at
+    now = time.monotonic()
+    if now - _interrupted_at >= _ONE_PRESS:
+        _interrupted_at = now
+        raise KeyboardInterrupt

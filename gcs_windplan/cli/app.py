@@ -11,10 +11,11 @@ from typing import Annotated
 import typer
 
 from gcs_windplan.cli import clear, compare, diff, linking, plan, pull, push, reproduce, schema, vehicle
-from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError
+from gcs_windplan.errors import WindplanError
 
 _EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
 _ALL_CODES = _EPILOG + " Verbs that talk to a vehicle: 3 the vehicle said no; 4 what it holds is unknown."
+_INTERRUPTED = 130  # what typer makes of Ctrl-C
 
 app = typer.Typer(
     help="Drone missions that know the wind and the ground.",
@@ -53,8 +54,8 @@ def _root(
     """Take the options that come before the verb."""
 
 
-def main() -> None:
-    """Run the command line and exit with its code."""
+def run() -> None:
+    """Run the command line and exit with its code; raises KeyboardInterrupt."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ° shows ?
@@ -62,17 +63,15 @@ def main() -> None:
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `| head` ends us as it ends any tool; files are written before
     try:
         app()
+    except SystemExit as end:
+        if end.code == _INTERRUPTED:
+            raise KeyboardInterrupt from None
+        raise
     except OSError as error:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 (what is left in the old one cannot be written)
         typer.echo(f"error: the output cannot be written ({error.strerror})", err=True)
         sys.exit(2)
-    except InputError as error:
-        for problem in error.problems:
-            typer.echo(f"error: {problem}", err=True)
-        sys.exit(2)
-    except NoRouteError as error:
-        typer.echo(f"error: {error}", err=True)
-        sys.exit(1)
-    except LinkError as error:
-        typer.echo(f"error: {error}", err=True)
-        sys.exit(3 if isinstance(error, RefusedError) else 4)
+    except WindplanError as error:
+        for line in linking.told(error):
+            typer.echo(f"error: {line}", err=True)
+        sys.exit(linking.code_of(error))

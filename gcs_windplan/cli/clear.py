@@ -30,7 +30,7 @@ def clear(
     """Delete type after type, until one is not accepted."""
     wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
     parts: list[Part] = []
-    with linking.vehicle(on, sysid, compid, sign, timeout) as (session, peer):
+    with linking.answering("clear", as_json), linking.vehicle(on, sysid, compid, sign, timeout) as (session, peer):
         from gcs_windplan.link.verified import clear_items
 
         for kind in wanted:

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 HELP = """Compare two missions: what was planned and what a vehicle gave back, in either order.
 
 What the firmware is known not to keep (ArduPilot: parts of a centimetre, some parameters, frames, its own home) is no
-difference. The firmware is what the files say, unless --autopilot does; where nobody says, every number counts.
+difference. The firmware is what the files say, unless --autopilot does; where nobody says, or the files name two,
+every number counts.
 """
 EPILOG = "Exit codes: 0 the same; 1 different; 2 a file cannot be read."
 
@@ -32,8 +33,14 @@ def diff(
 ) -> None:
     """Read both, compare, report."""
     first, second = _read(one), _read(other)
-    firmware = autopilot or first.autopilot or second.autopilot
-    comparisons = {"mission": _compared(first.items, second.items, "mission", firmware, first.vehicle_type)}
+    firmware = autopilot or _agreed(first.autopilot, second.autopilot)
+    kinds = {mission.vehicle_type for mission in (first, second)} - {None} or {None}
+    comparisons = {
+        "mission": max(  # of two kinds of vehicles, the stricter rules
+            (_compared(first.items, second.items, "mission", firmware, kind) for kind in sorted(kinds, key=str)),
+            key=lambda comparison: len(comparison.differences),
+        )
+    }
     if firmware is None:
         comparisons["mission"] = _with_home(comparisons["mission"], first, second)
     if ".plan" == one.suffix.lower() == other.suffix.lower():
@@ -46,6 +53,14 @@ def diff(
     else:
         _note_fences(first, second)
     _report(comparisons, firmware, as_json)
+
+
+def _agreed(one: Autopilot | None, other: Autopilot | None) -> Autopilot | None:
+    """The autopilot that the files name; None where they name two."""
+    if one is not None and other is not None and one != other:
+        linking.note("the files name different autopilots: every number counts")
+        return None
+    return one or other
 
 
 def _read(file: Path) -> Mission:
@@ -75,11 +90,11 @@ def _with_home(comparison: Comparison, first: Mission, second: Mission) -> Compa
 
     if first.home == second.home:
         return comparison
-    homes = [
+    ours, theirs = (
         "unknown" if mission.home is None else f"{mission.home.point}, {mission.home.altitude:.3f} m"
         for mission in (first, second)
-    ]
-    return replace(comparison, differences=(Difference(None, "home", *homes), *comparison.differences))
+    )
+    return replace(comparison, differences=(Difference(None, "home", ours, theirs), *comparison.differences))
 
 
 def _note_fences(first: Mission, second: Mission) -> None:
@@ -87,7 +102,7 @@ def _note_fences(first: Mission, second: Mission) -> None:
         linking.note("fence and rally points were not compared: a .waypoints file has none")
 
 
-def _report(comparisons: dict[str, Comparison], firmware: str | None, as_json: bool) -> None:
+def _report(comparisons: dict[str, Comparison], firmware: Autopilot | None, as_json: bool) -> None:
     same = all(comparison.same for comparison in comparisons.values())
     if as_json:
         parts = {
@@ -104,12 +119,14 @@ def _report(comparisons: dict[str, Comparison], firmware: str | None, as_json: b
         raise typer.Exit(1)
 
 
-def _print(comparisons: dict[str, Comparison], firmware: str | None, same: bool) -> None:
+def _print(comparisons: dict[str, Comparison], firmware: Autopilot | None, same: bool) -> None:
+    from gcs_windplan.link.comparison import loss_lines
+
     for kind, comparison in comparisons.items():
         for difference in comparison.differences:
             typer.echo(f"{kind}: {difference}")
-    losses = sum(len(comparison.losses) for comparison in comparisons.values())
-    if losses:
-        typer.echo(f"{losses} numbers differ in what {firmware} does not keep")
+    for kind, comparison in comparisons.items():
+        for line in loss_lines(comparison.losses, firmware):
+            typer.echo(f"{kind}: {line}")
     if same:
         typer.echo("the same")

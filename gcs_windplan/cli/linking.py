@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
+from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError, WindplanError
+
 if TYPE_CHECKING:
     from gcs_windplan.link.peer import Peer
     from gcs_windplan.link.session import Session, Watch
@@ -44,6 +46,33 @@ Timeout: TypeAlias = Annotated[
 Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 EXIT_CODES = {"accepted": 0, "rejected": 3, "unknown": 4}
+_DEEDS = {"push": "sent", "pull": "read", "clear": "deleted"}
+
+
+def told(error: WindplanError) -> tuple[str, ...]:
+    """The lines that tell an error."""
+    return tuple(map(str, error.problems)) if isinstance(error, InputError) else (str(error),)
+
+
+def code_of(error: WindplanError) -> int:
+    """The exit code of an error."""
+    if isinstance(error, LinkError):
+        return EXIT_CODES["rejected" if isinstance(error, RefusedError) else "unknown"]
+    return 1 if isinstance(error, NoRouteError) else 2
+
+
+@contextmanager
+def answering(verb: str, as_json: bool) -> Iterator[None]:
+    """Where JSON is wanted, errors print an object as well; they go on to where they are told and end the verb."""
+    try:
+        yield
+    except WindplanError as error:
+        if as_json:
+            code = code_of(error)
+            verdict = next((verdict for verdict, number in EXIT_CODES.items() if number == code), "error")
+            document = {"verb": verb, "outcome": verdict, "exit_code": code, "error": "; ".join(told(error))}
+            typer.echo(json.dumps(document, indent=2))
+        raise
 
 
 @contextmanager
@@ -82,19 +111,33 @@ def verdict_of(parts: Sequence[Part]) -> str:
     return next(verdict for verdict in ("unknown", "rejected", "accepted") if verdict in verdicts)
 
 
-def report(parts: Sequence[Part], skipped: Sequence[MissionType], peer: Peer, verb: str, as_json: bool) -> None:
-    """Print how each part ended, and leave with the exit code."""
+def report(
+    parts: Sequence[Part],
+    skipped: Sequence[MissionType],
+    peer: Peer,
+    verb: str,
+    as_json: bool,
+    more: dict[str, Any] | None = None,
+) -> None:
+    """Print how each part ended, and leave with the exit code; `more` is for the JSON object."""
     verdict = verdict_of(parts)
     code = EXIT_CODES[verdict]
     if as_json:
         described = [_described(part) for part in parts]
-        described += [{"type": kind, "outcome": "not sent"} for kind in skipped]
+        described += [{"type": kind, "outcome": f"not {_DEEDS[verb]}"} for kind in skipped]
         document = {"verb": verb, "vehicle": described_peer(peer), "outcome": verdict, "exit_code": code}
-        typer.echo(json.dumps({**document, "parts": described}, indent=2))
+        errors = [
+            f"{part.mission_type}: {part.outcome.message}" for part in parts if part.outcome.verdict != "accepted"
+        ]
+        failed = {"error": "; ".join(errors)} if errors else {}
+        typer.echo(json.dumps({**document, **failed, "parts": described, **(more or {})}, indent=2))
     for part in parts:
-        _print(part, peer, as_json)
+        if verb == "pull" and part.outcome.verdict == "accepted":
+            note(f"{part.mission_type} was read: {part.outcome.message}")
+        else:
+            _print(part, peer, as_json)
     for kind in skipped:
-        typer.echo(f"error: {kind} not sent, because of that", err=True)
+        typer.echo(f"error: {kind} not {_DEEDS[verb]}, because of that", err=True)
     if code:
         raise typer.Exit(code)
 
@@ -138,9 +181,11 @@ def _print(part: Part, peer: Peer, as_json: bool) -> None:
     elif not as_json:
         took = f"{part.seconds:.2f} s" if part.seconds == part.sending else _times(part)
         typer.echo(f"{part.mission_type} accepted by {peer}: {outcome.message} ({took})")
-        if part.comparison is not None and part.comparison.losses:
-            losses = part.comparison.losses
-            typer.echo(f"  {len(losses)} numbers as its firmware keeps them, such as {losses[0]}")
+        if part.comparison is not None:
+            from gcs_windplan.link.comparison import loss_lines
+
+            for line in loss_lines(part.comparison.losses, peer.autopilot):
+                typer.echo(f"  {line}")
     for line in outcome.notes:
         note(line)
 

@@ -39,13 +39,15 @@ def pull(
     as_json: linking.Json = False,
 ) -> None:
     """Read, and write what was read."""
-    wanted = _wanted(output, kinds)
-    with linking.vehicle(source, sysid, compid, sign, timeout) as (session, peer):
-        parts = _pull(session, peer, wanted, optional=kinds is None, as_json=as_json)
-        if all(part.outcome.verdict == "accepted" for part in parts):
-            mission = _assembled(session, peer, parts)
-            _write(mission, output)
+    with linking.answering("pull", as_json):
+        wanted = _wanted(output, kinds)
+        with linking.vehicle(source, sysid, compid, sign, timeout) as (session, peer):
+            parts = _pull(session, peer, wanted, optional=kinds is None, as_json=as_json)
+            if all(part.outcome.verdict == "accepted" for part in parts):
+                mission = _assembled(session, peer, parts)
+                _write(mission, output)
     if any(part.outcome.verdict != "accepted" for part in parts):
+        linking.note(f"nothing was written to {output}")
         linking.report(parts, (), peer, "pull", as_json)
     _report(mission, parts, peer, output, as_json)
 
@@ -56,8 +58,7 @@ def _wanted(output: Path, kinds: str | None) -> tuple[MissionType, ...]:
     suffix = output.suffix.lower()
     if suffix not in (".plan", ".waypoints"):
         raise FormatError(Problem("ends neither in .plan nor in .waypoints: name it so", file=output))
-    if not output.parent.is_dir():
-        raise FormatError(Problem("its folder is not there: make it first", file=output))
+    _refuse_unwritable(output)
     if suffix == ".waypoints" and kinds not in (None, "mission"):
         raise FormatError(
             Problem("is a .waypoints, which holds no fence and no rally points: write a .plan", file=output)
@@ -65,6 +66,26 @@ def _wanted(output: Path, kinds: str | None) -> tuple[MissionType, ...]:
     if kinds == "all" or (kinds is None and suffix == ".plan"):
         return _ALL
     return tuple(kind for kind in _ALL if kind == (kinds or "mission"))
+
+
+def _refuse_unwritable(output: Path) -> None:
+    """See before anything is read whether the file can be written."""
+    import os
+
+    from gcs_windplan.errors import FormatError, Problem
+
+    problem = ""
+    try:
+        if not output.parent.is_dir():
+            problem = "its folder is not there: make it first"
+        elif output.is_dir():
+            problem = "is a folder: add a file name"
+        elif not os.access(Path(os.path.realpath(output)).parent, os.W_OK | os.X_OK):
+            problem = "its folder cannot be written: choose another, or make it writable"
+    except OSError as error:
+        problem = f"cannot be written ({(error.strerror or str(error)).lower()}): choose another name"
+    if problem:
+        raise FormatError(Problem(problem, file=output))
 
 
 def _pull(session: Session, peer: Peer, wanted: tuple[MissionType, ...], optional: bool, as_json: bool) -> list[Part]:
@@ -99,7 +120,12 @@ def _assembled(session: Session, peer: Peer, parts: list[Part]) -> Mission:
         raise LinkError(f"what the vehicle holds makes no sense: {error}") from error
     if not mission.items and mission.fence is None and not mission.rally:
         raise RefusedError(f"the vehicle holds no {', no '.join(items)}: nothing was written")
-    return mission if mission.home is not None else _with_home(mission, session.ask_home(peer))
+    if mission.home is not None:
+        return mission
+    home = session.ask_home(peer)
+    if session.interrupted:
+        raise LinkError("interrupted: nothing was written")
+    return _with_home(mission, home)
 
 
 def _with_home(mission: Mission, home: Home | None) -> Mission:

@@ -10,6 +10,7 @@ import typer
 from gcs_windplan.cli import linking
 
 if TYPE_CHECKING:
+    from gcs_windplan.link.home import Homes
     from gcs_windplan.link.peer import Peer
     from gcs_windplan.link.session import Session
     from gcs_windplan.link.verified import Part
@@ -50,12 +51,17 @@ def push(
     as_json: linking.Json = False,
 ) -> None:
     """Read or plan, push, report."""
-    mission = _mission(file, kinds)
-    wanted = _wanted(mission, kinds, file)
-    with linking.vehicle(to, sysid, compid, sign, timeout) as (session, peer):
-        _note_kind(mission, peer, file)
-        parts = _push(session, peer, mission, wanted, verify, as_json)
-    linking.report(parts, wanted[len(parts) :], peer, "push", as_json)
+    with linking.answering("push", as_json):
+        mission = _mission(file, kinds)
+        wanted = _wanted(mission, kinds, file)
+        with linking.vehicle(to, sysid, compid, sign, timeout) as (session, peer):
+            _note_kind(mission, peer, file)
+            parts = _push(session, peer, mission, wanted, verify, as_json)
+            homes = _homes(session, peer, mission, parts)
+    if homes is not None and homes.apart:
+        typer.echo(f"WARNING: {homes}", err=True)
+    more = {} if homes is None else {"home": homes.described()}
+    linking.report(parts, wanted[len(parts) :], peer, "push", as_json, more)
 
 
 def _mission(file: Path, kinds: str | None) -> Mission:
@@ -124,3 +130,16 @@ def _push(
         if parts[-1].outcome.verdict != "accepted":
             break
     return parts
+
+
+def _homes(session: Session, peer: Peer, mission: Mission, parts: list[Part]) -> Homes | None:
+    """The file's home and the vehicle's, None where one is not known or no altitude counts from it."""
+    from gcs_windplan.link.home import Homes, counts_from_home
+
+    part = next((part for part in parts if part.mission_type == "mission"), None)
+    if part is None or part.outcome.verdict != "accepted" or mission.home is None:
+        return None
+    if not any(map(counts_from_home, mission.items)):
+        return None
+    held = part.home or session.ask_home(peer)
+    return None if held is None else Homes(mission.home, held)

@@ -127,7 +127,7 @@ def _serve(options: StandInOptions, transport: Transport, listen: str, key: byte
         try:
             serve(vehicle, codec, transport, time.monotonic)
         except LinkError as error:
-            if not listen.startswith("tcpin:"):
+            if not listen.lower().startswith("tcpin:"):
                 raise
             say(f"{error}; it waits for the next one")
 

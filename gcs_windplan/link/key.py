@@ -27,7 +27,7 @@ def read_key(path: Path) -> bytes:
     if text is not None:
         digits = re.fullmatch(r"[0-9a-fA-F]{64}", text)
         return bytes.fromhex(text) if digits else hashlib.sha256(text.encode()).digest()
-    if len(data) == _LENGTH:
+    if len(data) == _LENGTH and data.strip():
         return data
     raise InputError(Problem(f"is no key file: it must hold {_FORMS}", file=path))
 
@@ -38,4 +38,4 @@ def _line(data: bytes) -> str | None:
         text = data.decode("utf-8").rstrip("\r\n")
     except UnicodeDecodeError:
         return None
-    return text if text and text.isprintable() else None
+    return text if text.strip() and text.isprintable() else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol, Self, TypeAlias
@@ -138,7 +139,8 @@ class Session:
                     watch(*machine.progress)
         except KeyboardInterrupt:
             self.interrupted = True
-            self._send(machine.cancel())
+            with suppress(LinkError):
+                self._send(machine.cancel())
         except LinkError as error:
             machine.cancel("lost", str(error))
 

@@ -5,16 +5,18 @@ udpout:HOST:PORT  speak to an address
 tcp:HOST:PORT     connect to a server
 tcpin:HOST:PORT   be the server
 DEVICE[:BAUD]     a serial line
+
+udpin://HOST:PORT and the like mean the same, in capitals as well.
 """
 
 from __future__ import annotations
 
 import errno
+import os
 import select
 import socket
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from gcs_windplan.errors import AddressError, LinkError
@@ -25,7 +27,9 @@ Clock: TypeAlias = Callable[[], float]
 _LONGEST = 65_535  # [bytes] of a UDP datagram
 _CALLERS = 16  # addresses that a listening socket answers at most, the latest ones
 _SERIAL_RATE = 57_600  # [baud] of telemetry radios; USB lines do not care
+_FASTEST = 2**31 - 1  # [baud] that can be told to the system
 _CONNECTING = 5.0  # [s]
+_UNBROKEN = getattr(socket, "MSG_NOSIGNAL", 0)  # a closed connection is an error, and no signal that ends us
 _KINDS = ("udpin", "udpout", "tcp", "tcpin")
 _FORMS = "udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or a serial DEVICE[:BAUD]"
 
@@ -49,9 +53,10 @@ def open_transport(address: str) -> Transport:
     Raises LinkError where the address is right and the other side does not take the connection.
     """
     kind, colon, place = address.partition(":")
+    kind = kind.lower()
     if kind in _KINDS and colon:
-        return _open_socket(kind, _host_and_port(address, place), address)
-    if kind in ("udp", "serial", "file", "com") or "://" in address:
+        return _open_socket(kind, _host_and_port(address, place.removeprefix("//")), address)
+    if kind in (*_KINDS, "udp", "serial", "file", "com") or "://" in address:
         raise AddressError(f"the address {address!r} is of no known form: write {_FORMS}")
     return _open_serial(address)
 
@@ -60,13 +65,18 @@ def _host_and_port(address: str, place: str) -> tuple[str, int]:
     host, colon, port = place.rpartition(":")
     if not colon or not host:
         raise AddressError(f"the address {address!r} lacks host or port: write for example {_example(address)}")
-    if not port.isdecimal() or not 0 < int(port) < 65_536:
+    if not _is_number(port, 65_535):
         raise AddressError(f"the address {address!r} has the port {port!r}: give a number from 1 to 65535")
     return host.removeprefix("[").removesuffix("]"), int(port)
 
 
+def _is_number(text: str, most: int) -> bool:
+    """Whether a text is a whole number from 1 to `most`."""
+    return text.isascii() and text.isdigit() and len(text) < 11 and 0 < int(text) <= most
+
+
 def _example(address: str) -> str:
-    kind = address.partition(":")[0]
+    kind = address.partition(":")[0].lower()
     return f"{kind}:{'0.0.0.0' if kind.endswith('in') else '127.0.0.1'}:14550"
 
 
@@ -234,7 +244,7 @@ def _prepare(line: socket.socket) -> None:
 
 def _send_all(line: socket.socket, data: bytes) -> None:
     try:
-        line.sendall(data)
+        line.sendall(data, _UNBROKEN)
     except OSError as error:
         raise _lost(error) from error
 
@@ -272,15 +282,22 @@ def _open_serial(address: str) -> Transport:
         code = getattr(error, "errno", None)
         reason = errno.errorcode.get(code, "") if code else ""
         told = {"ENOENT": "there is no such device", "EACCES": "permission denied", "EBUSY": "it is in use"}
-        message = told.get(reason, str(error))
+        message = told.get(reason, "it is no serial line" if _is_no_line(error) else str(error))
         raise AddressError(f"the serial device {device!r} cannot be opened ({message}): write {_FORMS}") from error
 
 
 def _device_and_rate(address: str) -> tuple[str, int]:
     device, colon, rate = address.rpartition(":")
-    if not colon or Path(address).exists() or not rate.isdecimal():
+    if not colon or os.path.exists(address) or not (rate.isdecimal() or os.path.exists(device)):
         return address, _SERIAL_RATE
+    if not _is_number(rate, _FASTEST):
+        raise AddressError(f"the address {address!r} has the baud rate {rate!r}: give a number such as {_SERIAL_RATE}")
     return device, int(rate)
+
+
+def _is_no_line(error: Exception) -> bool:
+    """Whether the device took none of a serial line's settings, as files and /dev/null do."""
+    return isinstance(error.__context__, Exception) and error.__context__.args[:1] == (errno.ENOTTY,)
 
 
 class _Serial:

@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.link.codec import Message
-from gcs_windplan.mission import MissionItem, command_name, plain_frame, scales_place
+from gcs_windplan.mission import MissionItem, command_name, frame_name, plain_frame, scales_place, takes_place
 
 MissionType: TypeAlias = Literal["mission", "fence", "rally"]
 
@@ -36,11 +36,12 @@ def item_to_message(
 
     `mission_type` is MAVLink's number. `current` is 0 or 1 (the vehicle's next item); 2 and 3, which make
     ArduPilot fly there at once, raise ValueError. Deprecated _INT frames become plain ones. Raises InputError
-    for numbers that MAVLink's fields cannot hold.
+    for numbers that MAVLink's fields cannot hold, and for a place in a frame that has none.
     """
     if current not in (0, 1):
         raise ValueError(f"current {current} would command the vehicle, not fill its mission")
     _refuse_too_large(item, seq)
+    _refuse_parts(item, seq)
     return mavlink.MAVLink_mission_item_int_message(
         target_system,
         target_component,
@@ -80,6 +81,23 @@ def _refuse_too_large(item: MissionItem, seq: int) -> None:
     floats = (*item.params, item.altitude)
     if any(abs(number) > _LARGEST_FLOAT for number in floats) or any(abs(n) > _LARGEST_INT for n in (item.x, item.y)):
         raise InputError(f"item {seq} ({command_name(item.command)}) has a number too large for MAVLink: {item}")
+
+
+def _refuse_parts(item: MissionItem, seq: int) -> None:
+    """Refuse what would be rounded: parameters 5 and 6 are whole numbers on the wire where they are no degrees."""
+    if scales_place(item.command, item.frame):
+        return
+    which = f"item {seq} ({command_name(item.command)})"
+    for number, value in ((5, item.latitude_deg), (6, item.longitude_deg)):
+        if value == round(value):
+            continue
+        if takes_place(item.command):
+            name = "latitude" if number == 5 else "longitude"
+            frame = f"frame {frame_name(item.frame)}, which has no degrees"
+            raise InputError(f"{which} has the {name} {value:.10g} in {frame}: give it a global frame, such as 0 or 3")
+        raise InputError(
+            f"{which} has {value:.10g} as parameter {number}, which MAVLink carries as a whole number only"
+        )
 
 
 def _scaled(number: int, scale: float) -> float:

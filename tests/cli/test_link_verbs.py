@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.formats import read_plan, write_plan, write_waypoints
+from gcs_windplan.link.codec import Codec
+from gcs_windplan.link.session import OWN
 from gcs_windplan.mission import Command, Frame, Mission, MissionItem
 from tests.link.autopilots import PX4, ArduPilot, Autopilot
 from tests.link.bench import survey
@@ -84,9 +89,10 @@ def test_json(plan: Path):
     port = free_port()
     with calling(port, ArduPilot):
         done = run("push", plan, "--to", udpin(port), "--json", cwd=plan.parent)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0
     document = json.loads(done.stdout)
     assert (document["outcome"], document["exit_code"]) == ("accepted", 0)
+    assert "error" not in document
     assert document["vehicle"] == {
         "system": 1, "component": 1, "autopilot": "ardupilot", "type": "multicopter", "mavlink": 2,
     }  # fmt: skip
@@ -94,6 +100,142 @@ def test_json(plan: Path):
     assert [part["type"] for part in (mission, fence, rally)] == ["mission", "fence", "rally"]
     assert (mission["outcome"], mission["items"], mission["differences"]) == ("accepted", 7, [])
     assert any("altitude" in loss for loss in mission["losses"])
+
+
+def test_a_home_elsewhere_is_told_loudly(plan: Path):
+    port = free_port()
+    with calling(port, ArduPilot):
+        done = run("push", plan, "--to", udpin(port), "--json", *AT_ONCE, cwd=plan.parent)
+    assert done.returncode == 0
+    line = done.stderr.splitlines()[-1]
+    assert line.startswith("WARNING: the vehicle's home is 10")
+    assert "m away from the file's and 1070.8 m lower: it flies altitudes above home from its own" in line
+    home = json.loads(done.stdout)["home"]
+    assert home["vehicle"] == {"latitude": 47.1234567, "longitude": 8.5432109, "altitude": 489.25}
+    assert (home["file"]["altitude"], home["higher"], home["apart"]) == (1560.0, -1070.75, True)
+    assert home["distance"] > 100_000
+
+
+def test_a_home_where_it_was_planned_is_not_told(plan: Path):
+    port = free_port()
+    with calling(port, PX4) as (vehicle,):
+        vehicle.ears.append(lambda message: [message, *telling_home(vehicle, message)])
+        done = run("push", plan, "--to", udpin(port), "--json", *AT_ONCE, cwd=plan.parent)
+    assert done.returncode == 0
+    assert "WARNING" not in done.stderr
+    home = json.loads(done.stdout)["home"]
+    assert (home["distance"], home["higher"], home["apart"]) == (0.0, 0.0, False)
+
+
+def telling_home(vehicle: Autopilot, message) -> list:
+    """Answer the wish for HOME_POSITION with the survey's."""
+    if message.get_type() == "COMMAND_LONG":
+        place = (468134380, 98437720, 1560000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
+        vehicle.send(mavlink.MAVLink_home_position_message(*place))
+    return []
+
+
+def test_json_has_an_object_for_every_error(plan: Path):
+    folder, nowhere = plan.parent, udpin(free_port())
+    (folder / "bad.plan").write_text("{")
+    (folder / "blank.key").write_text("  \n")
+    failing = (
+        (2, "error", ("push", "bad.plan", "--to", nowhere)),
+        (2, "error", ("push", plan, "--to", "udp:x")),
+        (2, "error", ("push", plan, "--to", nowhere, "--sign", "blank.key")),
+        (2, "error", ("pull", "--from", nowhere, "-o", "no/x.plan")),
+        (4, "unknown", ("push", plan, "--to", nowhere, "--timeout", 0.3)),
+        (4, "unknown", ("pull", "--from", nowhere, "-o", "x.plan", "--timeout", 0.3)),
+        (4, "unknown", ("clear", "--on", nowhere, "--timeout", 0.3)),
+        (2, "error", ("clear", "--on", "udpin")),
+    )
+    for code, outcome, arguments in failing:
+        done = run(*arguments, "--json", cwd=folder)
+        document = json.loads(done.stdout)
+        assert (done.returncode, document["exit_code"], document["outcome"]) == (code, code, outcome), arguments
+        assert document["verb"] == arguments[0]
+        assert done.stderr == f"error: {document['error']}\n"
+    port = free_port()
+    with calling(port, PX4, lambda world: PX4(world, system=7)):
+        done = run("clear", "--on", udpin(port), "--json", cwd=folder)
+        assert "2 vehicles share the link" in json.loads(done.stdout)["error"]
+        done = run("pull", "--from", udpin(port), "-o", "x.plan", "--json", *AT_ONCE, cwd=folder)
+        document = json.loads(done.stdout)
+        assert (document["outcome"], document["exit_code"], done.returncode) == ("rejected", 3, 3)
+        assert document["error"].startswith("the vehicle holds no mission")
+
+
+def test_pull_of_all_from_mavlink_1_says_that_nothing_was_written(waypoints: Path):
+    port, folder = free_port(), waypoints.parent
+
+    def old(world) -> Autopilot:
+        vehicle = PX4(world)
+        vehicle.codec.version = 1
+        return vehicle
+
+    with calling(port, old):
+        assert run("push", waypoints, "--to", udpin(port), *AT_ONCE, cwd=folder).returncode == 0
+        done = run("pull", "--from", udpin(port), "-o", "x.plan", "--type", "all", *AT_ONCE, cwd=folder)
+        cleared = run("clear", "--on", udpin(port), "--type", "all", *AT_ONCE, cwd=folder)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr.splitlines() == [
+        "note: nothing was written to x.plan",
+        "note: mission was read: the vehicle holds 6 items",
+        "error: fence rejected: the vehicle speaks MAVLink 1 only, which has no fence: nothing was read",
+    ]
+    assert cleared.stderr.splitlines() == [
+        "error: fence rejected: the vehicle speaks MAVLink 1 only, which has no fence: nothing was deleted",
+        "error: rally not deleted, because of that",
+    ]
+
+
+def test_pull_sees_first_whether_it_can_write(tmp_path: Path):
+    (tmp_path / "folder.plan").mkdir()
+    (tmp_path / "file").write_text("")
+    for name, words in (
+        ("folder.plan", "is a folder"),
+        ("no/x.plan", "its folder is not there"),
+        ("file/x.plan", "its folder is not there"),
+        (f"{'x' * 300}.plan", "file name too long"),
+    ):
+        done = run("pull", "--from", udpin(free_port()), "-o", name, cwd=tmp_path)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert words in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32" or os.geteuid() == 0, reason="root writes everywhere")
+def test_pull_sees_a_folder_that_cannot_be_written(tmp_path: Path):
+    tmp_path.chmod(0o500)
+    done = run("pull", "--from", udpin(free_port()), "-o", tmp_path / "x.plan", cwd=Path("/"))
+    assert (done.returncode, "cannot be written" in done.stderr) == (2, True)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="signals")
+def test_a_tcp_vehicle_that_hangs_up(waypoints: Path):
+    """It asks for an item many times and is gone: the answers go into a closed connection."""
+    server = socket.create_server(("127.0.0.1", 0))
+    codec = Codec(1, 1)
+    beat = codec.encode(mavlink.MAVLink_heartbeat_message(2, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3))
+    request = mavlink.MAVLink_mission_request_int_message(255, OWN.component, 0, 0)
+
+    def play() -> None:
+        line, _ = server.accept()
+        line.settimeout(20)
+        line.sendall(beat)
+        while not any(message.get_type() == "MISSION_COUNT" for message in codec.decode(line.recv(4096))):
+            pass
+        line.sendall(b"".join(codec.encode(request) for _ in range(50)))
+        line.close()
+
+    thread = threading.Thread(target=play, daemon=True)
+    thread.start()
+    address = f"tcp:127.0.0.1:{server.getsockname()[1]}"
+    done = run("push", waypoints, "--to", address, *AT_ONCE, cwd=waypoints.parent)
+    thread.join(5)
+    server.close()
+    assert done.returncode == 4
+    assert done.stderr.startswith("error: mission unknown: the connection is lost (")
+    assert done.stderr.splitlines()[1] == "note: it is not known which mission the vehicle holds: pull it"
 
 
 def test_a_mission_file_is_planned_and_pushed(tmp_path: Path):
@@ -254,8 +396,9 @@ def test_several_vehicles(waypoints: Path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("kind", [ArduPilot, PX4])
-def test_ctrl_c(kind: type[Autopilot], waypoints: Path):
+def test_ctrl_c(kind: type[Autopilot], number: int, waypoints: Path):
     port = free_port()
     with calling(port, kind) as (vehicle,):
         vehicle.deaf("MISSION_ITEM_INT", 1000, seq=3)
@@ -264,7 +407,9 @@ def test_ctrl_c(kind: type[Autopilot], waypoints: Path):
         until = time.monotonic() + 20
         while (vehicle.upload is None or vehicle.upload.seq < 3) and time.monotonic() < until:
             time.sleep(0.02)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
+        time.sleep(0.02)
+        process.send_signal(number)  # the second one of an impatient user
         out, err = process.communicate(timeout=20)
         until = time.monotonic() + 5
         while not vehicle.heard_kinds("MISSION_ACK") and time.monotonic() < until:
@@ -274,6 +419,45 @@ def test_ctrl_c(kind: type[Autopilot], waypoints: Path):
     assert out == ""
     assert err.splitlines()[0] == "error: mission unknown: it was interrupted, and the vehicle was told so"
     assert "Traceback" not in err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("delay", [0.0, 0.15, 0.4, 0.8])
+def test_an_early_ctrl_c_ends_in_one_line(waypoints: Path, delay: float, number: int):
+    """While modules are loaded, and while a vehicle is waited for."""
+    code = CODE.replace("main()", "print('begins', flush=True); main()")
+    arguments = ["push", str(waypoints), "--to", udpin(free_port()), "--json"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begins\n"
+    time.sleep(delay + 0.02)
+    process.send_signal(number)
+    time.sleep(0.02)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 4
+    assert err.count("\n") == 1
+    assert "interrupted" in err
+    document = json.loads(out)
+    assert (document["verb"], document["outcome"], document["exit_code"]) == ("push", "unknown", 4)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("delay", [0.05, 1.5])
+def test_a_vehicle_that_is_ended(delay: float, number: int):
+    process = subprocess.Popen(
+        command("vehicle", "--listen", udpin(free_port())), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(delay + 0.3)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 0
+    assert "Traceback" not in err
+    assert (out + err).splitlines()[-1] in ("ended", "interrupted")
 
 
 def test_not_verified_is_believed(waypoints: Path):

@@ -132,7 +132,10 @@ def _mission_item(rng: random.Random, profile: str) -> MissionItem:
     if profile == "px4" and command != Command.NAV_WAYPOINT:
         hold = 0.0
     frame = 7 if bad else rng.choice((Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT))
-    return MissionItem(frame, command, (hold, 0.0, 0.0, yaw), *_place(rng), rng.uniform(-50, 4000))
+    latitude, longitude = _place(rng)
+    if bad:  # a frame without degrees, in which only whole numbers travel
+        latitude, longitude = float(round(latitude)), float(round(longitude))
+    return MissionItem(frame, command, (hold, 0.0, 0.0, yaw), latitude, longitude, rng.uniform(-50, 4000))
 
 
 def _before(rng: random.Random, profile: str, kind: MissionType) -> list[Stored]:

@@ -28,7 +28,9 @@ def test_keys(tmp_path, content, key):
     assert read_key(path) == key
 
 
-@pytest.mark.parametrize("content", [b"", b"\n", b"two\nlines\n", bytes(31), b"\xff" * 33])
+@pytest.mark.parametrize(
+    "content", [b"", b"\n", b"  \n", b" " * 32, b"\t\n" * 16, b"two\nlines\n", bytes(31), b"\xff" * 33]
+)
 def test_no_keys(tmp_path, content):
     path = tmp_path / "key"
     path.write_bytes(content)

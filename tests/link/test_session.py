@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import InputError, LinkError
+from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.link.codec import Codec
+from gcs_windplan.link.home import Homes
 from gcs_windplan.link.meeting import LISTENING
 from gcs_windplan.link.session import OWN, Session
+from gcs_windplan.link.verified import clear_items, pull_items, push_items
+from gcs_windplan.mission import Home
 
 from .autopilots import PX4, ArduPilot, Autopilot
 from .bench import bench
@@ -114,6 +120,73 @@ def test_home_of_a_vehicle_that_tells_it():
     home = session.ask_home(peer)
     assert home is not None
     assert (home.point.latitude_deg, home.point.longitude_deg, home.altitude) == (46.813438, 9.843772, 1560.25)
+
+
+def test_a_home_at_0_0_is_none():
+    world = World()
+    vehicle = PX4(world)
+    session = session_of(world)
+    peer = session.meet()
+
+    def answer(message):
+        if message.get_type() == "COMMAND_LONG":
+            vehicle.send(mavlink.MAVLink_home_position_message(0, 0, 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
+        return [message]
+
+    vehicle.ears.append(answer)
+    assert session.ask_home(peer) is None
+
+
+@pytest.mark.parametrize(
+    ("latitude", "altitude", "apart"),
+    [(46.8, 1560.0, False), (46.80026, 1564.9, False), (46.80028, 1560.0, True), (46.8, 1554.9, True)],
+)
+def test_homes_apart(latitude, altitude, apart):
+    homes = Homes(Home(GeoPoint(46.8, 9.8), 1560.0), Home(GeoPoint(latitude, 9.8), altitude))
+    assert homes.apart is apart
+    assert homes.described()["apart"] is apart
+    assert homes.distance == pytest.approx((latitude - 46.8) * 111_170, abs=0.1)
+
+
+def test_a_broken_push_says_no_more_than_is_known():
+    """A vehicle that accepts before it asked: another station deleted its mission meanwhile."""
+    for profile in ("ardupilot", "px4"):
+        stand = bench(profile)
+        count = stand.vehicle.on_count
+        stand.vehicle.answers["MISSION_COUNT"] = lambda message, sender, v=stand.vehicle: v.ack(sender, 0)
+        outcome = stand.push().outcome
+        assert (outcome.verdict, outcome.reason) == ("unknown", "protocol")
+        assert outcome.notes == ("it is not known which mission the vehicle holds: pull it",)
+        stand.vehicle.answers["MISSION_COUNT"] = count
+        stand.vehicle.deaf("MISSION_COUNT", 1000)
+        outcome = stand.push().outcome
+        assert (outcome.verdict, outcome.reason) == ("unknown", "no-answer")
+        assert outcome.notes == ("it is not known which mission the vehicle holds: pull it",)
+
+
+def test_a_clear_that_is_not_answered_says_so():
+    stand = bench("px4")
+    stand.vehicle.deaf("MISSION_CLEAR_ALL", 1000)
+    part = clear_items(stand.session, stand.peer, "rally")
+    assert part.outcome.verdict == "unknown"
+    assert part.outcome.notes == ("it is not known which rally points the vehicle holds: pull them",)
+
+
+def test_reading_back_shows_ardupilots_home():
+    part = bench("ardupilot").push()
+    assert part.home == Home(GeoPoint(47.1234567, 8.5432109), 489.25)
+    assert bench("px4").push().home is None
+
+
+@pytest.mark.parametrize(
+    ("deed", "words"), [(push_items, "nothing was sent"), (clear_items, "nothing was deleted"), (pull_items, "read")]
+)
+def test_mavlink_1_is_told_in_the_verbs_own_words(deed, words):
+    stand = bench("px4")
+    items = (stand.items("fence"),) if deed is push_items else ()
+    outcome = deed(stand.session, replace(stand.peer, version=1), "fence", *items).outcome
+    assert (outcome.verdict, outcome.reason) == ("rejected", "mavlink1")
+    assert outcome.message.endswith(words)
 
 
 def test_the_transport_is_closed():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -112,6 +113,37 @@ def test_tcp_with_nobody_there():
         open_transport(f"tcp:127.0.0.1:{free_port()}")
 
 
+@pytest.mark.parametrize(("one", "other"), [("udpin://", "udpout://"), ("UDPIN:", "UdpOut:"), ("TCPIN://", "tcp://")])
+def test_other_ways_to_write_an_address(opened, one, other):
+    port = free_port()
+    server = opened(f"{one}127.0.0.1:{port}")
+    client = opened(f"{other}127.0.0.1:{port}")
+    client.send(b"here I am")
+    assert heard(server, 9) == b"here I am"
+
+
+@pytest.mark.skipif(not hasattr(socket, "MSG_NOSIGNAL"), reason="signals")
+def test_a_closed_connection_is_an_error_even_where_sigpipe_ends_programs():
+    """The command line lets SIGPIPE end it, for `| head`."""
+    code = """
+import signal, socket
+from gcs_windplan.errors import LinkError
+from gcs_windplan.link.transport import open_transport
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+server = socket.create_server(("127.0.0.1", 0))
+line = open_transport(f"tcp:127.0.0.1:{server.getsockname()[1]}")
+server.accept()[0].close()
+try:
+    for _ in range(100):
+        line.send(b"x" * 1000)
+except LinkError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=False)
+    assert done.returncode == 0
+    assert done.stdout.startswith("the connection is lost")
+
+
 @pytest.mark.parametrize("kind", ["udpin", "tcpin"])
 def test_port_in_use(opened, kind):
     port = free_port()
@@ -125,6 +157,17 @@ def test_port_in_use(opened, kind):
     [
         ("udp:127.0.0.1:14550", "of no known form"),
         ("udp://:14550", "of no known form"),
+        ("UDP:127.0.0.1:14550", "of no known form"),
+        ("udpin", "of no known form: write udpin:HOST:PORT, udpout"),
+        ("TCP", "of no known form"),
+        ("tcp:localhost:١٢٣", "from 1 to 65535"),
+        ("tcp:localhost:²", "from 1 to 65535"),
+        ("udpin://", "for example udpin:0.0.0.0:14550"),
+        ("/dev/null", r"'/dev/null' cannot be opened \(it is no serial line\): write udpin"),
+        ("/dev/null:0", "the baud rate '0': give a number such as 57600"),
+        ("/dev/null:-9600", "the baud rate"),
+        ("/dev/null:99999999999999", "the baud rate"),
+        ("/dev/no-such-line:0", "the baud rate"),
         ("serial:///dev/ttyACM0", "of no known form"),
         ("udpin:", "for example udpin:0.0.0.0:14550"),
         ("udpout:14550", "for example udpout:127.0.0.1:14550"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -90,3 +91,21 @@ def test_items_that_cannot_be_are_refused(command, x, z):
 def test_an_unset_seventh_parameter_is_no_altitude():
     message = mavlink.MAVLink_mission_item_int_message(1, 1, 0, 2, Command.NAV_DELAY, 0, 1, 5, 0, 0, 0, 0, 0, math.nan)
     assert message_to_item(message) == MissionItem(2, Command.NAV_DELAY, (5, 0, 0, 0))
+
+
+@pytest.mark.parametrize("frame", [Frame.MISSION, Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT])
+def test_parts_of_parameters_that_travel_whole_are_refused(frame):
+    for number, numbers in ((5, (0.6, 0.0)), (6, (0.0, 0.6))):
+        item = MissionItem(frame, 187, (0, 0, 0, 0), *numbers, 0.0)  # DO_SET_ACTUATOR
+        text = f"item 4 \\(DO_SET_ACTUATOR\\) has 0.6 as parameter {number}, which MAVLink carries as a whole number"
+        with pytest.raises(InputError, match=text):
+            item_to_message(item, 4, 1, 1, 0)
+
+
+def test_a_place_in_a_frame_without_degrees_is_refused():
+    item = MissionItem(Frame.MISSION, Command.DO_LAND_START, (0, 0, 0, 0), 47.39, 8.54, 50.0)
+    with pytest.raises(InputError, match=r"item 3 \(DO_LAND_START\) has the latitude 47\.39 in frame MISSION"):
+        item_to_message(item, 3, 1, 1, 0)
+    with pytest.raises(InputError, match=r"the longitude 8\.54 in frame MISSION, .* give it a global frame"):
+        item_to_message(replace(item, latitude_deg=0.0), 3, 1, 1, 0)
+    assert sent(replace(item, frame=Frame.GLOBAL)).x == 473_900_000
