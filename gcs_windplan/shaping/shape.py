@@ -25,13 +25,14 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
     Where the wind jumps, a leg may pass through the bad side of the jump between two samples, and relaxing would
     collect such legs. So the result is compared with the path under closer sampling, and relaxed under that if need be.
     """
-    shortened = shorten(points, cost, clearance)
     if cost.choice.name not in ("time", "distance"):
-        return shortened
+        return shorten(points, cost, clearance)
     closest = cost.closer(_CLOSEST)
     limit = closest.of_polyline(points) * (1 + _ROUNDING)
     for times in _CLOSER:
-        relaxed = relax(shortened, cost.closer(times), clearance)
-        if closest.of_polyline(relaxed) <= limit:
-            return relaxed
-    return shortened if closest.of_polyline(shortened) <= limit else points
+        closer = cost.closer(times)
+        shortened = shorten(points, closer, clearance)
+        for shaped in (relax(shortened, closer, clearance), shortened):
+            if closest.of_polyline(shaped) <= limit:
+                return shaped
+    return points
