@@ -38,10 +38,14 @@ def main() -> None:
 
 
 def _listen(verb: str) -> None:
-    """Take SIGINT, and where a vehicle is to be told SIGTERM, for an interruption; once a press."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    """Take SIGINT, and where a vehicle is to be told SIGTERM, for an interruption; once a press.
+
+    A shell's background jobs are born deaf to SIGINT. With a vehicle on the line it is heard all the same.
+    """
+    linked = verb in (*_LINK_VERBS, "vehicle")
+    if linked or signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupt)
-    if verb in (*_LINK_VERBS, "vehicle"):
+    if linked:
         signal.signal(signal.SIGTERM, _interrupt)
 
 
