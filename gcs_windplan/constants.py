@@ -8,3 +8,5 @@ KNOT = NAUTICAL_MILE / 3600  # [m/s] BIPM SI brochure, 8th edition, table 8
 INTERNATIONAL_FOOT = 0.3048  # [m] NIST SP 811, B.6
 US_SURVEY_FOOT = 1200 / 3937  # [m] NIST SP 811, B.6
 STATUTE_MILE = 1609.344  # [m] NIST SP 811, B.6
+DRY_AIR = 287.0597  # [J/kg/K] gas constant; ECMWF IFS documentation, part IV, chapter 12
+WATER_VAPOUR = 461.5250  # [J/kg/K] gas constant; the same

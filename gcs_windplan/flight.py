@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost import LegIntegrals, integrate
+from gcs_windplan.cost import LegIntegrals, clocked, integrate, still_air_times
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Terrain
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
+
+
+_NEAR_THE_END = 3600.0  # [s] a leg that stops so shortly before the forecast's end stops because of it
 
 
 def clock(seconds: float) -> str:
@@ -91,14 +94,16 @@ class Flight:
     totals: Totals
 
 
-def fly(points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField, vehicle: Vehicle) -> Flight:
-    """Fly a polyline (n, 3): east, north, height above mean sea level [m].
+def fly(
+    points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField, vehicle: Vehicle, begin: float = 0.0
+) -> Flight:
+    """Fly a polyline (n, 3): east, north, height above mean sea level [m], from `begin` on [s since departure].
 
     Raises `NoRouteError` where a leg cannot be flown in the wind.
     """
     starts, ends = points[:-1], points[1:]
-    parts = integrate(wind, vehicle, starts, ends)
-    _refuse_unflyable(parts)
+    parts, times = fly_legs(points, wind, vehicle, begin)
+    _refuse_unflyable(parts, times, wind)
     heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
     legs = tuple(_leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts)))
@@ -106,11 +111,32 @@ def fly(points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField
     return Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
 
 
-def _refuse_unflyable(parts: LegIntegrals) -> None:
+def fly_legs(
+    points: FloatArray, wind: WindField, vehicle: Vehicle, begin: float = 0.0
+) -> tuple[LegIntegrals, FloatArray]:
+    """What the wind does along each leg of a polyline (n, 3), and the times at its points (n,) [s since departure].
+
+    Infinite from the first leg on that cannot be flown, or lasts beyond the forecast.
+    """
+
+    def measure(when: FloatArray | None) -> tuple[LegIntegrals, FloatArray]:
+        parts = integrate(wind, vehicle, points[:-1], points[1:], when)
+        return parts, parts.seconds
+
+    return clocked(measure, still_air_times(points, vehicle, begin), len(wind.times) > 1)
+
+
+def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField) -> None:
     """Raise if the wind, looked at closely, stops a leg that the graph's coarser wind let pass."""
     stopped = np.flatnonzero(~np.isfinite(parts.seconds))
     if len(stopped):
         i = int(stopped[0])
+        if len(wind.times) > 1 and np.isfinite(parts.along[i]) and times[i] >= wind.times[-1] - _NEAR_THE_END:
+            raise NoRouteError(
+                f"the forecast ends {wind.times[-1] / 60:.0f} min after departure, during leg {i + 1} at the latest: take"
+                " a forecast that reaches further, or depart earlier.",
+                {"wind": len(stopped)},
+            )
         if not np.isfinite(parts.along[i] + parts.across[i]):
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"

@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost import CostChoice, LegCost
-from gcs_windplan.errors import RequestError
-from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
+from gcs_windplan.cost import CostChoice, LegCost, rank_of
+from gcs_windplan.errors import NoRouteError, RequestError, WindError
+from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly, fly_legs
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.search import WindyVeil, blow, find_path
 from gcs_windplan.shaping import shape
@@ -30,6 +30,10 @@ from gcs_windplan.siting import (
 )
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
+from gcs_windplan.wind.field import WindField
+
+_WAITS = tuple(k / 8 for k in range(1, 9))  # of the flight's duration: who waits longer cannot arrive earlier
+_WORTH_WAITING = 0.01  # of the flight's duration
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,11 +48,28 @@ class Effort:
     shaping_seconds: float
 
 
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """How long the route takes in each member of an ensemble [s]; infinite where one cannot fly it."""
+
+    seconds: tuple[float, ...]
+
+    def at(self, quantile: float) -> float:
+        """The time of the member at a quantile, from the fastest up [s]."""
+        return sorted(self.seconds)[rank_of(quantile, len(self.seconds))]
+
+    @property
+    def unflyable(self) -> int:
+        """How many members cannot fly it."""
+        return sum(not np.isfinite(one) for one in self.seconds)
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Plan:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
-    `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `notes` say
+    `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
+    the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `notes` say
     what a pilot must know before flying it.
     """
 
@@ -58,6 +79,7 @@ class Plan:
     cost: float
     graph_cost: float
     effort: Effort
+    spread: Spread | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -83,6 +105,17 @@ class Plan:
         )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Ready:
+    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share."""
+
+    request: Request
+    rules: Clearance
+    sites: FloatArray
+    windy: WindyVeil
+    seconds: float
+
+
 def plan_route(request: Request) -> Plan:
     """Plan the request's route by its own cost.
 
@@ -94,6 +127,12 @@ def plan_route(request: Request) -> Plan:
 
 def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     """Plan the request's route once for each cost, on one and the same veil."""
+    ready = prepare(request)
+    return [plan_ready(ready, choice) for choice in choices]
+
+
+def prepare(request: Request) -> Ready:
+    """Stand the sites, lay the veil, and let the wind blow on it. Raises as `plan_route` does."""
     rules = Clearance(
         request.terrain,
         request.clearance,
@@ -110,9 +149,29 @@ def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     begin = time.perf_counter()
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
-    windy = blow(_lay_veil(request, rules, layers, sites, area), request.wind)
-    veil_seconds = time.perf_counter() - begin
-    return [_plan(request, choice, rules, windy, sites, veil_seconds) for choice in choices]
+    windy = blow(_lay_veil(request, rules, layers, sites, area), request.wind, request.members)
+    return Ready(request, rules, sites, windy, time.perf_counter() - begin)
+
+
+def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
+    """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does."""
+    request = ready.request
+    found = _find_route(ready, choice, begin, request.members)
+    flight, spread = _flown(request, found, begin)
+    if request.members and choice.name == "time":
+        calm = replace(ready, windy=blow(ready.windy.veil, request.wind))
+        other = _find_route(calm, choice, begin, ())
+        flown, spread_of_other = _flown(request, other, begin)
+        assert spread is not None
+        assert spread_of_other is not None
+        if spread_of_other.at(request.robust) < spread.at(request.robust):
+            found, flight, spread = other, flown, spread_of_other
+    effort = Effort(
+        ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
+        found.shaping_seconds,
+    )  # fmt: skip
+    notes = (*_notes(request, ready.windy), *_waiting(ready, found, begin))
+    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, notes)
 
 
 def _lay_veil(
@@ -126,39 +185,61 @@ def _lay_veil(
     return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
 
 
-def _plan(
-    request: Request,
-    choice: CostChoice,
-    rules: Clearance,
-    windy: WindyVeil,
-    sites: FloatArray,
-    veil_seconds: float,
-) -> Plan:
-    """Search and shape each section between two sites, then fly the whole."""
-    route, vertices, expanded, total, graph_total = [sites[:1]], 1, 0, 0.0, 0.0
-    search_seconds = shaping_seconds = 0.0
-    for start, goal in pairwise(sites):
+@dataclass(slots=True, eq=False)
+class _Found:
+    """A route on its way: its points, what it costs, what finding it took, and when the next section begins."""
+
+    route: list[FloatArray]
+    clock: float
+    cost: float = 0.0
+    graph_cost: float = 0.0
+    vertices: int = 1
+    expanded: int = 0
+    deferred: int = 0
+    search_seconds: float = 0.0
+    shaping_seconds: float = 0.0
+
+
+def _find_route(ready: Ready, choice: CostChoice, begin: float, members: tuple[WindField, ...]) -> _Found:
+    """Search and shape each section between two sites, one after the other in time."""
+    request = ready.request
+    found = _Found([ready.sites[:1]], begin)
+    for start, goal in pairwise(ready.sites):
         straight = float(np.linalg.norm(goal - start))
-        cost = LegCost(choice, request.wind, request.vehicle, windy.veil.edge_length, straight)
-        path = find_path(windy, cost, start, goal)
-        begin = time.perf_counter()
-        shaped = shape(path.points, cost, rules)
-        shaping_seconds += time.perf_counter() - begin
-        search_seconds += path.seconds
-        expanded += path.expanded
-        vertices += len(path.points) - 1
-        total += cost.of_polyline(shaped)
-        graph_total += cost.of_polyline(path.points)
-        route.append(shaped[1:])
-    flight = fly(np.concatenate(route), request.frame, request.terrain, request.wind, request.vehicle)
-    effort = Effort(windy.veil.size, expanded, vertices, veil_seconds, search_seconds, shaping_seconds)
-    return Plan(request, choice, flight, total, graph_total, effort, _notes(request, windy))
+        cost = LegCost(
+            choice, request.wind, request.vehicle, ready.windy.veil.edge_length, straight, found.clock, members,
+            request.robust,
+        )  # fmt: skip
+        path = find_path(ready.windy, cost, start, goal, found.clock)
+        since = time.perf_counter()
+        shaped = shape(path.points, cost, ready.rules)
+        found.shaping_seconds += time.perf_counter() - since
+        found.search_seconds += path.seconds
+        found.expanded += path.expanded
+        found.deferred += path.deferred
+        found.vertices += len(path.points) - 1
+        prices, times = cost.priced(shaped)
+        found.cost += float(np.sum(prices))
+        found.graph_cost += cost.of_polyline(path.points)
+        found.route.append(shaped[1:])
+        found.clock = float(times[-1])
+    return found
+
+
+def _flown(request: Request, found: _Found, begin: float) -> tuple[Flight, Spread | None]:
+    """The route flown in the request's wind, and in every member."""
+    points = np.concatenate(found.route)
+    flight = fly(points, request.frame, request.terrain, request.wind, request.vehicle, begin)
+    if not request.members:
+        return flight, None
+    times = [fly_legs(points, member, request.vehicle, begin)[1][-1] - begin for member in request.members]
+    return flight, Spread(tuple(float(one) for one in times))
 
 
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     """What a pilot must know: models that flatter, tests that miss, what the vehicle does not hold."""
     notes = []
-    strongest = float(np.nanmax(np.hypot(windy.winds[:, 0], windy.winds[:, 1]), initial=0.0))
+    strongest = float(np.nanmax(np.hypot(windy.winds[..., 0], windy.winds[..., 1]), initial=0.0))
     if request.vehicle.speed_model == "paper":
         text = "the speed model `paper` counters cross wind for free: its times are some percent too short"
         if strongest > request.vehicle.airspeed / 2:
@@ -173,3 +254,39 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     if request.rally and request.finish == "return":
         notes.append("at the end the vehicle returns to the rally point nearest to it, or home if that is nearer.")
     return tuple(notes)
+
+
+def _waiting(ready: Ready, found: _Found, begin: float) -> tuple[str, ...]:
+    """A note where leaving later would arrive earlier: some way was closed by the wind and opens later.
+
+    Where every way stays open nobody who leaves later arrives earlier, and nothing is tried.
+    """
+    lasting = found.clock - begin
+    if not found.deferred:
+        return ()
+    best, leave = lasting, 0.0
+    for share in _WAITS:
+        try:
+            later = _find_route_time(ready, begin + share * lasting)
+        except (NoRouteError, WindError):
+            continue
+        if share * lasting + later < best:
+            best, leave = share * lasting + later, share * lasting
+    if lasting - best < _WORTH_WAITING * lasting:
+        return ()
+    return (
+        f"waiting pays: leaving {leave / 60:.0f} min later arrives {(lasting - best) / 60:.0f} min earlier, since the"
+        " wind closes the best way until then.",
+    )
+
+
+def _find_route_time(ready: Ready, begin: float) -> float:
+    """How long the graph's quickest path takes that begins at `begin` [s]."""
+    request, clock_ = ready.request, begin
+    for start, goal in pairwise(ready.sites):
+        cost = LegCost(
+            CostChoice("time"), request.wind, request.vehicle, ready.windy.veil.edge_length,
+            float(np.linalg.norm(goal - start)), clock_, request.members, request.robust,
+        )  # fmt: skip
+        clock_ += find_path(ready.windy, cost, start, goal, clock_).cost
+    return clock_ - begin

@@ -86,7 +86,8 @@ class Request:
     ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. A vehicle that
     returns at the end flies home at `return_height` above home [m], or higher if it is; or to the nearest `rally`
     point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into the mission
-    beside the route. `locate` puts file and line to a problem that names a field.
+    beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for the `robust`
+    quantile of its legs' cost over them. `locate` puts file and line to a problem that names a field.
     """
 
     name: str
@@ -113,6 +114,8 @@ class Request:
     fence: tuple[FenceArea, ...] = ()
     fence_return: Site | None = None
     rally: tuple[Site, ...] = ()
+    members: tuple[WindField, ...] = ()
+    robust: float = 0.5
     locate: Callable[[Problem], Problem] = lambda problem: problem
 
     @property

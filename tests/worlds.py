@@ -8,10 +8,11 @@ import numpy as np
 
 from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.veil import Clearance
+from gcs_windplan.wind.field import Steady
 
 
 @dataclass(frozen=True)
-class WavyWind:
+class WavyWind(Steady):
     """A smooth wind of random waves [m/s] over a few hundred metres."""
 
     seed: int
@@ -47,3 +48,30 @@ def over_ground(dem: Dem, east: float, north: float, above: float) -> np.ndarray
 
 
 AREA = Extent(-900.0, -900.0, 900.0, 900.0)
+
+
+@dataclass(frozen=True)
+class ShiftingWind:
+    """A wind that goes from one wavy field to the next, linear in time between `knots` [s since departure]."""
+
+    seeds: tuple[int, ...] = (1, 2)
+    knots: tuple[float, ...] = (-60.0, 400.0)
+    strength: float = 5.0
+    rising: float = 0.0
+    name: str = "shifting"
+    resolution: float = 25.0
+
+    @property
+    def times(self):
+        return np.array(self.knots)
+
+    def at(self, points, seconds=0.0):
+        when = np.broadcast_to(np.asarray(seconds, dtype=float), len(points))
+        assert (when >= self.knots[0]).all()
+        assert (when <= self.knots[-1]).all(), "asked for wind beyond the forecast"
+        fields = np.stack([WavyWind(seed, self.strength, self.rising).at(points) for seed in self.seeds])
+        later = np.clip(np.searchsorted(self.knots, when, side="right"), 1, len(self.knots) - 1)
+        knots = np.array(self.knots)
+        share = (when - knots[later - 1]) / (knots[later] - knots[later - 1])
+        rows = np.arange(len(points))
+        return (1 - share)[:, None] * fields[later - 1, rows] + share[:, None] * fields[later, rows]

@@ -1,7 +1,7 @@
 """The costs that a route is chosen by: distance, angle, hybrid (the paper's) and time."""
 
-from gcs_windplan.cost.costs import COST_NAMES, CostChoice, CostName, LegCost, enclosing_ball
-from gcs_windplan.cost.sampling import LegIntegrals, integrate, performance_of
+from gcs_windplan.cost.costs import COST_NAMES, CostChoice, CostName, LegCost, enclosing_ball, rank_of
+from gcs_windplan.cost.sampling import LegIntegrals, clocked, integrate, performance_of, still_air_times
 
 __all__ = [
     "COST_NAMES",
@@ -9,7 +9,10 @@ __all__ = [
     "CostName",
     "LegCost",
     "LegIntegrals",
+    "clocked",
     "enclosing_ball",
     "integrate",
     "performance_of",
+    "rank_of",
+    "still_air_times",
 ]

@@ -1,6 +1,6 @@
 """The costs that a route is chosen by.
 
-In the search an edge costs what the kernels in `kernels/best_first.py` say. For legs of any length, as shaping makes
+In the search an edge costs what the kernels in `kernels/edges.py` say. For legs of any length, as shaping makes
 them, each cost has a form that adds up along a polyline. For distance and time that is the same measure. The paper's
 angle is counted once an edge, however long: a single leg against the wind would be "better" than ten short ones down
 it. So here a leg costs its mean angle times its length in ordinary edges; and hybrid, in which the paper's search
@@ -17,9 +17,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost.sampling import CloserWind, integrate, performance_of
+from gcs_windplan.cost.sampling import CloserWind, clocked, integrate, performance_of, still_air_times
 from gcs_windplan.errors import InputError, Problem
-from gcs_windplan.kernels import best_first as kernel
+from gcs_windplan.kernels import edges as kernel
 from gcs_windplan.kernels.triangle import Performance, mean_angles
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
@@ -58,7 +58,9 @@ class CostChoice:
 class LegCost:
     """A cost at work: for one vehicle in one wind, between two sites.
 
-    `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m].
+    `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m];
+    `begin` is when the start is left [s since departure]. With `members` of an ensemble a leg costs what it costs in
+    the member at the `quantile` from the cheapest up; `wind` is then their mean.
     """
 
     choice: CostChoice
@@ -66,11 +68,61 @@ class LegCost:
     vehicle: Vehicle
     edge_length: float
     straight: float
+    begin: float = 0.0
+    members: tuple[WindField, ...] = ()
+    quantile: float = 0.5
 
-    def of_legs(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
-        """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown."""
+    def of_legs(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None) -> FloatArray:
+        """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown.
+
+        `when` (n, 2) is at what time each begins and ends [s since departure]; without it the departure counts.
+        """
+        return self._measured(starts, ends, when)[0]
+
+    def of_polyline(self, points: FloatArray) -> float:
+        """The cost of a polyline (n, 3)."""
+        return float(np.sum(self.priced(points)[0]))
+
+    def priced(self, points: FloatArray, guess: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
+        """The cost of each leg of a polyline (n, 3), and the times at its points (n,) [s since departure].
+
+        `guess` (n,) are times to begin with.
+        """
+        times = still_air_times(points, self.vehicle, self.begin) if guess is None else guess
+        return clocked(lambda when: self._measured(points[:-1], points[1:], when), times, self.changing)
+
+    @property
+    def changing(self) -> bool:
+        """Whether the wind changes with time."""
+        return len(self.wind.times) > 1
+
+    @property
+    def rank(self) -> int:
+        """How many members undercut the one that counts."""
+        return rank_of(self.quantile, len(self.members)) if self.members else 0
+
+    def scratch(self) -> FloatArray | None:
+        """What the kernels note down for each member; None where there are none."""
+        return np.empty((2, len(self.members))) if self.members else None
+
+    def _measured(
+        self, starts: FloatArray, ends: FloatArray, when: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Cost and seconds of legs, (n,) each."""
+        if not self.members:
+            return self._measured_in(self.wind, starts, ends, when)
+        each = [self._measured_in(member, starts, ends, when) for member in self.members]
+        costs, seconds = (np.stack(part) for part in zip(*each, strict=True))
+        chosen = np.argsort(costs, axis=0, kind="stable")[self.rank : self.rank + 1]
+        return np.take_along_axis(costs, chosen, 0)[0], np.take_along_axis(seconds, chosen, 0)[0]
+
+    def _measured_in(
+        self, wind: WindField, starts: FloatArray, ends: FloatArray, when: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        parts = integrate(wind, self.vehicle, starts, ends, when)
+        if self.choice.name == "time":
+            return parts.seconds, parts.seconds
         lengths = np.linalg.norm(ends - starts, axis=1)
-        parts = integrate(self.wind, self.vehicle, starts, ends)
         angle = parts.angle / self.edge_length
         match self.choice.name:
             case "distance":
@@ -79,20 +131,16 @@ class LegCost:
                 cost = angle
             case "hybrid":
                 cost = self.choice.angle * angle / math.pi + self.choice.distance * lengths / self.straight
-            case "time":
-                cost = parts.seconds
-        return np.where(np.isfinite(parts.seconds), cost, np.inf)
-
-    def of_polyline(self, points: FloatArray) -> float:
-        """The cost of a polyline (n, 3)."""
-        return float(np.sum(self.of_legs(points[:-1], points[1:])))
+        return np.where(np.isfinite(parts.seconds), cost, np.inf), parts.seconds
 
     def closer(self, times: float) -> LegCost:
         """The same cost, but the wind along a leg is looked at so many times more closely."""
-        return replace(self, wind=CloserWind(self.wind, times))
+        members = tuple(CloserWind(member, times) for member in self.members)
+        return replace(self, wind=CloserWind(self.wind, times), members=members)
 
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
-        """The search kernels' settings for a goal (3,) in the nodes' winds (n, 3)."""
+        """The search kernels' settings for a goal (3,) in the nodes' winds (..., 3), at all times, in all members."""
+        winds = winds.reshape(-1, 3)
         centre, radius = enclosing_ball(winds)
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
@@ -133,6 +181,11 @@ class LegCost:
     def performance(self) -> Performance:
         """The vehicle as the kernels take it."""
         return performance_of(self.vehicle)
+
+
+def rank_of(quantile: float, members: int) -> int:
+    """The place of the member at a quantile, from 0: of 10 members 0.9 is the 9th, place 8."""
+    return min(max(math.ceil(quantile * members - 1e-9) - 1, 0), members - 1)
 
 
 def enclosing_ball(winds: FloatArray) -> tuple[FloatArray, float]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -19,8 +19,12 @@ from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, Performance, integrat
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
+_Result = TypeVar("_Result")
+
 _MOST_PANELS: Final = 512  # of a leg, before any is halved
 _HALVINGS: Final = 10
+_MOST_ROUNDS: Final = 12  # of putting the clock in again: each gains a factor of 10 and more
+_SAME_TIME: Final = 1e-3  # [s]
 _CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
 _SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
 
@@ -43,7 +47,7 @@ class CloserWind:
     """A wind that asks to be sampled so many times more closely than it says itself."""
 
     wind: WindField
-    times: float
+    finer: float
 
     @property
     def name(self) -> str:
@@ -53,9 +57,14 @@ class CloserWind:
     @property
     def resolution(self) -> float:
         """Half of the spacing at which it is looked at [m]."""
-        return self.wind.resolution / self.times
+        return self.wind.resolution / self.finer
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    @property
+    def times(self) -> FloatArray:
+        """The wind's own."""
+        return self.wind.times
+
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         return self.wind.at(points, seconds)
 
@@ -68,22 +77,58 @@ def performance_of(vehicle: Vehicle) -> Performance:
 
 
 def integrate(
-    wind: WindField, vehicle: Vehicle, starts: FloatArray, ends: FloatArray, seconds: float = 0.0
+    wind: WindField, vehicle: Vehicle, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None
 ) -> LegIntegrals:
-    """Integrate along straight legs (n, 3) in the wind as it is `seconds` after departure."""
+    """Integrate along straight legs (n, 3).
+
+    `when` (n, 2) is at what time each leg begins and ends [s since departure]: in between the clock runs evenly along
+    the leg. Without it the wind is taken as at the departure. A leg that lasts beyond the last time of a changing wind
+    cannot be flown.
+    """
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     panels = np.clip(np.ceil(lengths / (2 * wind.resolution)), 1, _MOST_PANELS).astype(np.int64)  # two samples each
+    last = float(wind.times[-1]) if len(wind.times) > 1 else np.inf
 
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
-        return wind.at(starts[leg] + share[:, None] * vectors[leg], seconds)
+        points = starts[leg] + share[:, None] * vectors[leg]
+        if when is None:
+            return wind.at(points)
+        return wind.at(points, np.minimum(when[leg, 0] + share * (when[leg, 1] - when[leg, 0]), last))
 
     leg, widths, winds = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
     first = np.zeros(len(vectors) + 1, dtype=np.int64)
     np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
     weights = (widths[:, None] * _SIMPSON).ravel()
     table = integrate_legs(performance_of(vehicle), vectors, first, weights, winds.reshape(-1, 3))
-    return LegIntegrals(table[:, 0], table[:, 1], table[:, 2], table[:, 3])
+    seconds = table[:, 0]
+    if when is not None:
+        seconds = np.where(when[:, 0] + seconds <= last, seconds, np.inf)
+    return LegIntegrals(seconds, table[:, 1], table[:, 2], table[:, 3])
+
+
+def clocked(
+    measure: Callable[[FloatArray | None], tuple[_Result, FloatArray]], guess: FloatArray, changing: bool
+) -> tuple[_Result, FloatArray]:
+    """What a polyline's legs come to, and the times (n,) at its points [s], the first one as in the `guess` (n,).
+
+    `measure` takes when each leg begins and ends (n - 1, 2) and gives a result and each leg's seconds. In changing wind
+    these depend on when a leg is flown, and that on the legs before: what is found is put in again until no arrival
+    moves by a millisecond.
+    """
+    times = guess
+    for _ in range(_MOST_ROUNDS if changing else 1):
+        result, seconds = measure(np.column_stack([times[:-1], times[1:]]) if changing else None)
+        before, times = times, times[0] + np.append(0.0, np.cumsum(seconds))
+        if not np.isfinite(times[-1]) or np.abs(times - before).max() < _SAME_TIME:
+            break
+    return result, times
+
+
+def still_air_times(points: FloatArray, vehicle: Vehicle, begin: float) -> FloatArray:
+    """When a polyline's points (n, 3) would be passed in still air (n,) [s]: something to begin with."""
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return begin + np.append(0.0, np.cumsum(lengths / vehicle.airspeed))
 
 
 def _first_panels(

@@ -1,129 +1,20 @@
 """A* over an implicit grid and over a CSR graph; edge costs are worked out on the fly from the nodes' winds.
 
 Both kernels are one textbook A* with a closed list and a binary heap with lazy deletion. With a consistent lower bound
-that is optimal; with the paper's heuristics, which are none, it is what the paper runs.
-
-Edges take the wind as linear between their two nodes. Where both ends can be flown, so can all between: the winds in
-which a track is flyable are a convex set.
+that is optimal; with the paper's heuristics, which are none, it is what the paper runs. In changing wind a node's label
+carries the time of arrival; least time is optimal there too, as long as who leaves later does not arrive earlier.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
-from gcs_windplan.kernels.triangle import PAPER, Performance, leg_seconds, wind_angle
-
-DISTANCE, ANGLE, HYBRID, TIME = 0.0, 1.0, 2.0, 3.0
-
-
-class Setting(NamedTuple):
-    """What a search minimises, and where to."""
-
-    code: float  # one of the four above
-    goal_e: float  # [m], as are the next two
-    goal_n: float
-    goal_z: float
-    angle_weight: float = 0.0  # hybrid (11)
-    distance_weight: float = 0.0
-    straight: float = 1.0  # from start to goal [m]
-    ball_e: float = 0.0  # all winds lie in a ball about this one [m/s]
-    ball_n: float = 0.0
-    ball_radius: float = 0.0
-    ball_up: float = 0.0  # the strongest up-draught and down-draught [m/s]
-    ball_down: float = 0.0
-
-
-@numba.njit(error_model="numpy", forceinline=True)
-def edge_cost(
-    performance: Performance, setting: Setting,
-    level: float, east: float, north: float, climb: float,
-    ae: float, an: float, au: float,
-    be: float, bn: float, bu: float,
-) -> float:  # fmt: skip
-    """The cost of an edge in the search; infinite where it cannot be flown.
-
-    The edge goes `level` [m] along the unit track (east, north) and gains `climb` [m] in a wind from a to b [m/s]. Its
-    time is the mean of the times in both winds (the trapezoidal rule). The angle is that at the arrival, (10).
-    """
-    outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
-    if outset == math.inf:
-        return outset
-    seconds: float = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
-    code = setting.code
-    if code == TIME or seconds == math.inf:
-        return seconds
-    if code == DISTANCE:
-        return math.sqrt(level * level + climb * climb)
-    angle: float = wind_angle(level * east, level * north, climb, be, bn, bu)
-    if code == ANGLE:
-        return angle
-    weight: float = setting.angle_weight
-    return weight * angle / math.pi
-
-
-@numba.njit(cache=True, error_model="numpy")
-def edge_between(
-    performance: Performance, setting: Setting,
-    de: float, dn: float, dz: float,
-    ae: float, an: float, au: float,
-    be: float, bn: float, bu: float,
-) -> float:  # fmt: skip
-    """`edge_cost` of an edge given by its vector (de, dn, dz) [m]."""
-    level = math.sqrt(de * de + dn * dn)
-    if level == 0.0:
-        if dz == 0.0:
-            return 0.0
-        return edge_cost(performance, setting, 0.0, 0.0, 0.0, dz, ae, an, au, be, bn, bu)
-    return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
-
-
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
-def remaining(performance: Performance, setting: Setting, e: float, n: float, z: float) -> float:
-    """The estimate from a place to the goal; for distance and time a consistent lower bound.
-
-    Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with
-    airspeed V + r in the constant wind c; times in a constant wind obey the triangle inequality. The paper's model
-    does so only for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball
-    on 0.
-    """
-    de, dn, dz = setting.goal_e - e, setting.goal_n - n, setting.goal_z - z
-    level2 = de * de + dn * dn
-    code = setting.code
-    if code != TIME:
-        distance = math.sqrt(level2 + dz * dz)
-        if code == DISTANCE:
-            return distance
-        if code == HYBRID:
-            share: float = setting.distance_weight * distance / max(distance, setting.straight)
-            return share
-        return 0.0
-    vertical = 0.0
-    if dz > 0.0:
-        vertical = dz / (performance.climb + setting.ball_up)
-    elif dz < 0.0:
-        vertical = -dz / (performance.descent + setting.ball_down)
-    if level2 == 0.0:
-        return vertical
-    level = math.sqrt(level2)
-    airspeed = performance.airspeed + setting.ball_radius
-    along = (setting.ball_e * de + setting.ball_n * dn) / level
-    if performance.model == PAPER:
-        speed = airspeed + along
-    else:
-        cross = (setting.ball_n * de - setting.ball_e * dn) / level
-        rest = airspeed * airspeed - cross * cross
-        if rest < 0.0:
-            return math.inf
-        speed = math.sqrt(rest) + along
-    if speed <= 0.0:
-        return math.inf
-    seconds: float = max(vertical, level / speed)
-    return seconds
+from gcs_windplan.kernels.edges import Setting, remaining, travel, travel_between
+from gcs_windplan.kernels.triangle import Performance
 
 
 @numba.njit(error_model="numpy", forceinline=True)
@@ -182,15 +73,17 @@ def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
     performance: Performance, setting: Setting,
-    seeds: IntArray, seed_costs: FloatArray, seed_keys: FloatArray, targets: IntArray, target_costs: FloatArray,
+    seeds: IntArray, seed_costs: FloatArray, seed_keys: FloatArray, seed_clocks: FloatArray,
+    targets: IntArray, goal_winds: FloatArray,
+    times: FloatArray | None, rank: int, each: FloatArray | None, tally: IntArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a grid of layers, rows (to the north) and columns (to the east).
 
     `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers,
     rows, columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step
-    k < m is an edge; `winds` (nodes, 3) [m/s]; `estimates` (nodes,) in place of `remaining`, or empty. The search
-    begins at `seeds` with their costs and keys (cost and estimate), and ends with the cheapest of `targets` plus its
-    cost.
+    k < m is an edge; `winds`, `times`, `rank`, `each` and `tally` as in `edges`; `estimates` (nodes,) in place of
+    `remaining`, or empty. The search begins at `seeds` with their costs, keys (cost and estimate) and clocks [s], and
+    ends with the cheapest of `targets` plus the edge from there to the goal, whose winds are shaped as a single node's.
 
     Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
     every node reached (infinite elsewhere).
@@ -213,6 +106,7 @@ def search_grid(
     for node in range(n):
         reached[node] = math.inf
         came_by[node] = -1
+    clocks = np.empty(0 if times is None else n)
     closed = np.zeros(n, dtype=np.uint8)  # 1: expanded, 2: a target
     keys = np.empty(max(1024, 4 * seeds.size))
     nodes = np.empty(keys.size, dtype=np.int64)
@@ -223,6 +117,8 @@ def search_grid(
         node = seeds[i]
         if seed_costs[i] < reached[node]:
             reached[node] = seed_costs[i]
+            if times is not None:
+                clocks[node] = seed_clocks[i]
             _push(keys, nodes, size, seed_keys[i], node)
             size += 1
     best, arrival, expanded = math.inf, -1, 0
@@ -234,15 +130,19 @@ def search_grid(
         size -= 1
         if closed[node] & 1:
             continue
+        clock = 0.0 if times is None else clocks[node]
+        layer, row, column = node // (rows * columns), (node // columns) % rows, node % columns
         if closed[node] & 2:
-            for i in range(targets.size):
-                if targets[i] == node and reached[node] + target_costs[i] < best:
-                    best = reached[node] + target_costs[i]
-                    arrival = node
+            cost, _ = travel_between(
+                performance, setting, times, tally, rank, each, winds, node, goal_winds, 0,
+                setting.goal_e - (corner[0] + column * spacing), setting.goal_n - (corner[1] + row * spacing),
+                setting.goal_z - heights[node], clock,
+            )  # fmt: skip
+            if reached[node] + cost < best:
+                best = reached[node] + cost
+                arrival = node
         closed[node] |= 1
         expanded += 1
-        layer, row, column = node // (rows * columns), (node // columns) % rows, node % columns
-        ae, an, au = winds[node, 0], winds[node, 1], winds[node, 2]
         keys, nodes = _room(keys, nodes, size + 2 * half)
         inside = layers == 1 and reach <= row < rows - reach and reach <= column < columns - reach
         for k in range(2 * half):
@@ -258,13 +158,16 @@ def search_grid(
             mask = legal[node] >> k if k < half else legal[to] >> (k - half)
             if mask & 1 == 0:
                 continue
-            cost = reached[node] + edge_cost(
-                performance, setting, tracks[k, 0], tracks[k, 1], tracks[k, 2], heights[to] - heights[node],
-                ae, an, au, winds[to, 0], winds[to, 1], winds[to, 2],
+            cost, seconds = travel(
+                performance, setting, times, tally, rank, each, winds, node, winds, to,
+                tracks[k, 0], tracks[k, 1], tracks[k, 2], heights[to] - heights[node], clock,
             )  # fmt: skip
+            cost += reached[node]
             if cost < reached[to]:
                 reached[to] = cost
                 came_by[to] = k
+                if times is not None:
+                    clocks[to] = clock + seconds
                 if estimates.size > 0:
                     ahead = estimates[to]
                 else:
@@ -297,11 +200,12 @@ def search_grid(
 def search_csr(
     first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
     performance: Performance, setting: Setting, start: int, goal: int,
+    times: FloatArray | None, begin: float, rank: int, each: FloatArray | None, tally: IntArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
 
-    `points` (nodes, 3) [m], `winds` (nodes, 3) [m/s], `estimates` (nodes,) in place of `remaining`, or empty. Returns
-    as `search_grid` does.
+    `points` (nodes, 3) [m]; `winds`, `times`, `rank`, `each` and `tally` as in `edges`, `begin` the clock at the start
+    [s]; `estimates` (nodes,) in place of `remaining`, or empty. Returns as `search_grid` does.
     """
     n = points.shape[0]
     reached = np.empty(n)
@@ -309,6 +213,9 @@ def search_csr(
     for node in range(n):
         reached[node] = math.inf
         came_from[node] = -1
+    clocks = np.empty(0 if times is None else n)
+    if times is not None:
+        clocks[start] = begin
     closed = np.zeros(n, dtype=np.uint8)
     keys = np.empty(1024)
     nodes = np.empty(1024, dtype=np.int64)
@@ -325,19 +232,23 @@ def search_csr(
         expanded += 1
         if node == goal:
             break
+        clock = 0.0 if times is None else clocks[node]
         keys, nodes = _room(keys, nodes, size + first[node + 1] - first[node])
         for k in range(first[node], first[node + 1]):
             to = neighbours[k]
             if closed[to]:
                 continue
-            cost = reached[node] + edge_between(
-                performance, setting,
+            cost, seconds = travel_between(
+                performance, setting, times, tally, rank, each, winds, node, winds, to,
                 points[to, 0] - points[node, 0], points[to, 1] - points[node, 1], points[to, 2] - points[node, 2],
-                winds[node, 0], winds[node, 1], winds[node, 2], winds[to, 0], winds[to, 1], winds[to, 2],
+                clock,
             )  # fmt: skip
+            cost += reached[node]
             if cost < reached[to]:
                 reached[to] = cost
                 came_from[to] = node
+                if times is not None:
+                    clocks[to] = clock + seconds
                 if estimates.size > 0:
                     ahead = estimates[to]
                 else:

@@ -1,5 +1,6 @@
 """A* on the veil."""
 
-from gcs_windplan.search.astar import GraphPath, WindyVeil, blow, find_path
+from gcs_windplan.search.astar import GraphPath, find_path
+from gcs_windplan.search.windy import WindyVeil, blow
 
 __all__ = ["GraphPath", "WindyVeil", "blow", "find_path"]

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
-from gcs_windplan.cores import spread
 from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.kernels.best_first import Setting, edge_between, remaining, search_csr, search_grid
+from gcs_windplan.kernels.best_first import search_csr, search_grid
+from gcs_windplan.kernels.edges import joins, remaining
+from gcs_windplan.search.windy import WindyVeil
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
 from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
-from gcs_windplan.wind.field import WindField
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
-_BATCH = 100_000  # nodes whose wind is sampled at a time
+_LONG = 3.0  # times the straight way in still air: for so long the wind is sampled at first
 _MOST_EXPLAINED = 200_000  # reached nodes whose legs are judged again to explain a failure
 _CUT_BY_WIND = "wind (too strong for the vehicle, or not known that high)"
 _ADVICE = {
@@ -34,119 +34,120 @@ _ADVICE = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GraphPath:
-    """A path through the veil: its points (n, 3) with the sites at both ends, its cost, and what finding it took."""
+    """A path through the veil: its points (n, 3) with the sites at both ends, its cost, and what finding it took.
+
+    `deferred` edges could not be flown when the search came to them, but can be later: waiting might pay.
+    """
 
     points: FloatArray
     cost: float
     expanded: int
     seconds: float
+    deferred: int = 0
+
+
+def find_path(
+    windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
+) -> GraphPath:
+    """The path from start to goal, (3,) each, that begins at `clock` [s since departure].
+
+    Raises `NoRouteError` that says what cuts the goal off.
+    """
+    begin = time.perf_counter()
+    find = _search_grid if isinstance(windy.veil, GridVeil) else _search_prm
+    horizon = _LONG * float(np.linalg.norm(goal - start)) / cost.vehicle.airspeed
+    while True:
+        windy.cover(clock, clock + horizon)
+        found = find(windy, cost, start, goal, clock)
+        complete = len(found.points) > 0 and (cost.choice.name == "time" or found.outlasted == 0)
+        reaches = windy.times is None or clock + horizon >= windy.ends
+        if complete or reaches or found.outlasted == 0:
+            break
+        horizon *= 3
+    seconds = time.perf_counter() - begin
+    if len(found.points) == 0:
+        raise no_route(windy.veil, np.flatnonzero(np.isfinite(found.reached)), start, goal, found.outlasted > 0)
+    return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WindyVeil:
-    """A veil with the wind at its nodes: `points` and `winds` (n, 3) [m], [m/s]; no wind where the ground is
-    unknown."""
+class _Found:
+    """What a kernel has found: a path (n, 3), its cost, the cost of each node reached, and what it counted."""
 
-    veil: GridVeil | PrmVeil
     points: FloatArray
-    winds: FloatArray
+    cost: float
+    expanded: int
+    reached: FloatArray
+    outlasted: int
+    deferred: int
 
 
-def blow(veil: GridVeil | PrmVeil, wind: WindField) -> WindyVeil:
-    """Sample the wind at all nodes of a veil."""
-    points = veil.points
-    winds = np.zeros_like(points)
-
-    def sample(begin: int) -> None:
-        part = slice(begin, begin + _BATCH)
-        known = np.isfinite(points[part, 2])
-        winds[part][known] = wind.at(points[part][known])
-
-    for _ in spread(sample, range(0, len(points), _BATCH)):
-        pass
-    return WindyVeil(veil, points, winds)
-
-
-def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray) -> GraphPath:
-    """The path from start to goal, (3,) each. Raises `NoRouteError` that says what cuts the goal off."""
-    begin = time.perf_counter()
-    found = _search_grid if isinstance(windy.veil, GridVeil) else _search_prm
-    points, total, expanded, reached = found(windy, cost, start, goal)
-    seconds = time.perf_counter() - begin
-    if len(points) == 0:
-        raise no_route(windy.veil, np.flatnonzero(np.isfinite(reached)), start, goal)
-    return GraphPath(points, total, expanded, seconds)
-
-
-def _search_grid(
-    windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray
-) -> tuple[FloatArray, float, int, FloatArray]:
+def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float) -> _Found:
     """A* on the grid; the sites are joined to the nodes around them."""
     veil = windy.veil
     assert isinstance(veil, GridVeil)
     ends = np.stack([start, goal])
-    air = cost.wind.at(ends)
-    setting = cost.setting(goal, np.concatenate([windy.winds, air]))
-    seeds, seed_costs = _joins(windy, cost, setting, start, air[0], outward=True)
-    targets, target_costs = _joins(windy, cost, setting, goal, air[1], outward=False)
+    air = windy.at(ends)
+    site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
+    setting = cost.setting(goal, np.concatenate([windy.winds, air], axis=-2))
+    world = windy.times, cost.rank, cost.scratch(), np.zeros(2, dtype=np.int64)
     performance, estimates = cost.performance(), cost.estimates(windy.points, goal)
+
+    def leave(nodes: IntArray, winds: FloatArray, vectors: FloatArray) -> FloatArray:
+        times, rank, each, tally = world
+        return joins(performance, setting, times, tally, rank, each, site_winds, winds, nodes, vectors, clock)
+
+    near = _clear_nodes(windy, start)
+    costs = leave(near, windy.winds, windy.points[near] - start)
+    flyable = np.isfinite(costs[:, 0])
+    seeds, costs = near[flyable], costs[flyable]
     if len(estimates):
         ahead = estimates[seeds]
     else:
         ahead = np.array([remaining(performance, setting, *windy.points[seed]) for seed in seeds], dtype=np.float64)
     nodes, total, expanded, reached = search_grid(
         np.array(veil.heights.shape, dtype=np.int64), veil.corner, veil.spacing, veil.steps,
-        veil.heights.ravel(), veil.legal, windy.winds, estimates,
-        performance, setting, seeds, seed_costs, seed_costs + ahead, targets, target_costs,
+        veil.heights.ravel(), veil.legal, windy.winds, estimates, performance, setting,
+        seeds, costs[:, 0], costs[:, 0] + ahead, clock + costs[:, 1], _clear_nodes(windy, goal), goal_winds, *world,
     )  # fmt: skip
     direct = math.inf
     if np.linalg.norm(goal - start) <= _JOIN * veil.spacing and not veil.clearance.breaches(ends[:1], ends[1:])[0]:
-        direct = edge_between(cost.performance(), setting, *(goal - start), *air[0], *air[1])
-    if direct <= total and math.isfinite(direct):
-        return ends, direct, expanded, reached
-    if len(nodes) == 0:
-        return np.empty((0, 3)), total, expanded, reached
-    points = np.concatenate([start[None], windy.points[nodes], goal[None]])
-    moved = np.append(True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 0)
-    return points[moved], total, expanded, reached
+        direct = float(leave(np.zeros(1, dtype=np.int64), goal_winds, (goal - start)[None])[0, 0])
+    points = ends if direct <= total and math.isfinite(direct) else np.empty((0, 3))
+    if len(nodes) and not len(points):
+        points = np.concatenate([start[None], windy.points[nodes], goal[None]])
+        points = points[np.append(True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 0)]
+    outlasted, deferred = (int(count) for count in world[3])
+    return _Found(points, min(direct, total), expanded, reached, outlasted, deferred)
 
 
-def _joins(
-    windy: WindyVeil, cost: LegCost, setting: Setting, site: FloatArray, air: FloatArray, outward: bool
-) -> tuple[IntArray, FloatArray]:
-    """The nodes around a site with a clear, flyable leg from it (outward) or to it, and what that leg costs."""
+def _clear_nodes(windy: WindyVeil, site: FloatArray) -> IntArray:
+    """The nodes around a site with a clear leg between the two."""
     veil = windy.veil
     assert isinstance(veil, GridVeil)
     nodes = veil.near(site, _JOIN * veil.spacing)
     sites = np.broadcast_to(site, (len(nodes), 3))
-    nodes = nodes[veil.clearance.breaches(sites, windy.points[nodes]) == 0]
-    performance = cost.performance()
-    costs = np.empty(len(nodes))
-    for i, node in enumerate(nodes):
-        there, blows = windy.points[node], windy.winds[node]
-        if outward:
-            costs[i] = edge_between(performance, setting, *(there - site), *air, *blows)
-        else:
-            costs[i] = edge_between(performance, setting, *(site - there), *blows, *air)
-    flyable = np.isfinite(costs)
-    return nodes[flyable], costs[flyable]
+    clear: IntArray = nodes[veil.clearance.breaches(sites, windy.points[nodes]) == 0]
+    return clear
 
 
-def _search_prm(
-    windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray
-) -> tuple[FloatArray, float, int, FloatArray]:
+def _search_prm(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float) -> _Found:
     """A* on the roadmap, in which the sites are nodes."""
     veil = windy.veil
     assert isinstance(veil, PrmVeil)
     ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
+    tally = np.zeros(2, dtype=np.int64)
     nodes, total, expanded, reached = search_csr(
         veil.first, veil.neighbours, veil.points, windy.winds, cost.estimates(veil.points, goal),
         cost.performance(), cost.setting(goal, windy.winds), ends[0], ends[1],
+        windy.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
-    return veil.points[nodes], total, expanded, reached
+    return _Found(veil.points[nodes], total, expanded, reached, int(tally[0]), int(tally[1]))
 
 
-def no_route(veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goal: FloatArray) -> NoRouteError:
+def no_route(
+    veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goal: FloatArray, outlasted: bool = False
+) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)
@@ -167,6 +168,8 @@ def no_route(veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goa
         return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
     listed = "; ".join(f"{name}: {count} legs" for name, count in cuts.items())
     advice = _ADVICE[next(iter(cuts))]
+    if outlasted:
+        advice += " Some ways last longer than the forecast reaches: take a later end, or depart earlier."
     return NoRouteError(
         f"no route: the search reached {len(reached)} of {veil.size} nodes, and what leads on is cut by {listed}."
         f" {advice}",

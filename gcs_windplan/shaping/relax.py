@@ -69,15 +69,15 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
 
 def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float) -> FloatArray:
     """Drop the vertices that matter least, one after the other, as long as the polyline costs at most `limit`."""
-    legs = cost.of_legs(points[:-1], points[1:])
+    legs, times = cost.priced(points)
     while len(points) > 2:
-        skip = cost.of_legs(points[:-2], points[2:])
+        skip = cost.of_legs(points[:-2], points[2:], _spans(cost, times[:-2], times[2:]))
         skip[clearance.breaches(points[:-2], points[2:]) != 0] = np.inf
         extra = skip - legs[:-1] - legs[1:]
         least = int(np.argmin(extra))
         if not legs.sum() + extra[least] <= limit:
             break
-        points = np.delete(points, least + 1, axis=0)
+        points, times = np.delete(points, least + 1, axis=0), np.delete(times, least + 1)
         legs = np.concatenate([legs[:least], skip[least : least + 1], legs[least + 2 :]])
     return points
 
@@ -105,12 +105,14 @@ def _settle(
 ) -> tuple[FloatArray, float]:
     """Move the inner vertices until none gains any more; the polyline and its cost."""
     points = points.copy()
-    legs = cost.of_legs(points[:-1], points[1:])
+    legs, times = cost.priced(points)
     n = len(points)
     size = np.full(n, first_step)
     total = float(legs.sum())
     for sweep in range(_SWEEPS if n < _LONG else _SWEEPS // 2):
         if sweep % _LOOKS == 0 and sweep > 0:
+            if cost.changing:  # all have moved a little: so have the times, and with them the winds
+                legs, times = cost.priced(points, times)
             before, total = total, float(legs.sum())
             if before - total < _REST * total:
                 break
@@ -120,15 +122,21 @@ def _settle(
             if not (size[1:-1] >= _LAST_STEP).any():
                 break
             continue
-        moved = _try_around(points, legs, moving, size[moving], cost, clearance, sweep)
+        moved = _try_around(points, legs, times, moving, size[moving], cost, clearance, sweep)
         size[moving] *= np.where(moved, _GROW, _SHRINK)
         np.minimum(size, _FIRST_STEP, out=size)
-    return points, float(legs.sum())
+    return points, cost.of_polyline(points) if cost.changing else float(legs.sum())
+
+
+def _spans(cost: LegCost, begins: FloatArray, ends: FloatArray) -> FloatArray | None:
+    """When legs begin and end (n, 2), where that matters."""
+    return np.column_stack([begins.ravel(), ends.ravel()]) if cost.changing else None
 
 
 def _try_around(
     points: FloatArray,
     legs: FloatArray,
+    times: FloatArray,
     moving: IntArray,
     size: FloatArray,
     cost: LegCost,
@@ -137,7 +145,8 @@ def _try_around(
 ) -> BoolArray:
     """Move each of the vertices `moving`, no two of them neighbours, to the best place around it; which have moved.
 
-    `points` and the costs of the `legs` are changed in place.
+    `points` and the costs of the `legs` are changed in place. The `times` (n,) at the points are taken as they are: a
+    move changes them by seconds, in which no forecast changes.
     """
     before, after = points[moving - 1], points[moving + 1]
     reach = 0.5 * (np.linalg.norm(points[moving] - before, axis=1) + np.linalg.norm(after - points[moving], axis=1))
@@ -150,7 +159,12 @@ def _try_around(
     price = np.full(len(starts), np.inf)
     clear = clearance.breaches(starts, ends) == 0
     clear = np.tile(clear[: len(places)] & clear[len(places) :], 2)
-    price[clear] = cost.of_legs(starts[clear], ends[clear])
+    when = _spans(
+        cost,
+        np.concatenate([np.tile(times[moving - 1], shape[0]), np.tile(times[moving], shape[0])]),
+        np.concatenate([np.tile(times[moving], shape[0]), np.tile(times[moving + 1], shape[0])]),
+    )
+    price[clear] = cost.of_legs(starts[clear], ends[clear], None if when is None else when[clear])
     first, second = price[: len(places)].reshape(shape), price[len(places) :].reshape(shape)
     choice = np.argmin(first + second, axis=0)
     pick = np.arange(len(moving))

@@ -46,7 +46,11 @@ def _best_subset(points: FloatArray, cost: LegCost, clearance: Clearance, toll: 
     i, j = i[near], j[near]
     clear = (j - i == 1) | (clearance.breaches(points[i], points[j]) == 0)
     i, j = i[clear], j[clear]
-    legs = cost.of_legs(points[i], points[j]) + toll
+    when = None
+    if cost.changing:
+        times = cost.priced(points)[1]
+        when = np.column_stack([times[i], times[j]])
+    legs = cost.of_legs(points[i], points[j], when) + toll
     best = np.full(n, np.inf)
     best[0] = 0.0
     came_from = np.full(n, -1, dtype=np.int64)

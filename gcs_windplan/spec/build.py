@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
@@ -21,7 +22,7 @@ from gcs_windplan.spec.outlines import fence_area_of, prism_of
 from gcs_windplan.spec.parsing import MissionDocument, read_document
 from gcs_windplan.spec.places import place_of
 from gcs_windplan.spec.terrain import build_obstacles, build_terrain
-from gcs_windplan.spec.wind import build_wind
+from gcs_windplan.spec.wind import DAY, Departure, build_wind
 from gcs_windplan.spec.world import SiteModel
 from gcs_windplan.terrain import Extent
 from gcs_windplan.vehicle import Vehicle
@@ -33,8 +34,10 @@ _NEAREST_POLE = 89.0  # [deg]
 _SPARE = 500.0  # [m] of terrain read beyond the veil, so that sites just outside of it get their own message
 
 
-def read_mission(path: Path | str) -> Request:
+def read_mission(path: Path | str, departure: datetime | None = None, lasting: float = DAY) -> Request:
     """The request in a mission file, terrain and wind read.
+
+    `departure`, with its time zone, takes the place of the file's; a forecast is read for `lasting` [s] from then on.
 
     Raises `MissionFileError` with every problem of the file, or the error of a terrain or wind that cannot be used,
     with the line that names it.
@@ -54,15 +57,16 @@ def read_mission(path: Path | str) -> Request:
         _prisms(document, "keep_out", model.keep_out, frame, problems),
         _prisms(document, "keep_in", model.keep_in, frame, problems),
     )
-    wind = _collected(document, "wind", problems, lambda: build_wind(document, frame, terrain, area))
-    if problems or wind is None:
+    when = Departure(model.departure if departure is None else departure.astimezone(UTC), lasting)
+    winds = _collected(document, "wind", problems, lambda: build_wind(document, frame, terrain, area, when))
+    if problems or winds is None:
         raise MissionFileError(problems)
     graph = model.graph
     return Request(
         name=model.name,
         frame=frame,
         terrain=terrain,
-        wind=wind,
+        wind=winds.wind,
         vehicle=Vehicle(**model.vehicle.model_dump()),
         start=sites[0],
         goal=sites[-1],
@@ -76,13 +80,15 @@ def read_mission(path: Path | str) -> Request:
         obstacles=obstacles,
         airspace=airspace,
         collision_test=model.collision_test,
-        departure=model.departure,
+        departure=when.moment,
         finish=model.finish,
         return_height=model.return_height,
         export=Export(**model.export.model_dump()),
         fence=_fence(model, frame),
         fence_return=None if model.fence.return_point is None else beside[-1],
         rally=tuple(beside[: len(model.rally)]),
+        members=winds.members,
+        robust=0.5 if model.robust is None else model.robust,
         locate=_locator(document),
     )
 

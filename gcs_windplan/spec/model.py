@@ -20,6 +20,7 @@ from gcs_windplan.spec.values import (
     NodeCount,
     PositiveLength,
     PositiveSpeed,
+    Quantile,
     Seed,
     UtcTime,
     Weight,
@@ -145,7 +146,7 @@ class MissionModel(Section):
         description="the ground; exactly one of dem, sample, mesh, surface", examples=["{dem: tile.tif}"]
     )
     obstacles: tuple[ObstacleModel, ...] = Field(default=(), description="closed meshes that stand on the terrain")
-    wind: WindModel = Field(description="exactly one of calm, constant, paper, netcdf", examples=["{calm: true}"])
+    wind: WindModel = Field(description="exactly one of calm, constant, paper, forecast", examples=["{calm: true}"])
     start: SiteModel = Field(description="where the route begins", examples=[_PLACE])
     goal: SiteModel = Field(description="where the route ends", examples=[_PLACE])
     via: tuple[SiteModel, ...] = Field(default=(), description="places to pass, in this order")
@@ -164,6 +165,11 @@ class MissionModel(Section):
     fence: FenceModel = Field(default=FenceModel(), description="the autopilot's own fence; see `keep_out[].fence`")
     rally: tuple[SiteModel, ...] = Field(
         default=(), description="rally points: where the vehicle may return to in place of home"
+    )
+    robust: Quantile | None = Field(
+        default=None,
+        description="plan for this quantile of the cost over the members of an ensemble, such as 0.9; default 0.5; only"
+        " with `wind.members`",
     )
     departure: UtcTime | None = Field(default=None, description="the time of take-off; kept in UTC")
     finish: Literal["land", "return", "hold"] = Field(default="land", description="what to do at the goal")

@@ -47,6 +47,8 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     yield from _local_without_origin(fields)
     yield from _equal_neighbours(fields)
     yield from fence_contradictions(fields)
+    if "robust" in fields and "members" not in _section(fields, "wind"):
+        yield Finding(("robust",), "belongs only beside wind.members; leave it out", at_key=True)
 
 
 def _layers_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:

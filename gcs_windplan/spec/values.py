@@ -237,6 +237,8 @@ Direction = Annotated[float, Measure(ANGLE, at_least=0, at_most=360)]
 Number = Annotated[float, Measure(NUMBER)]
 Weight = Annotated[float, WEIGHT]
 Exponent = Annotated[float, Measure(NUMBER, at_least=0, at_most=1)]
+Quantile = Annotated[float, Measure(NUMBER, at_least=0.5, at_most=0.99)]
+Member = Annotated[int, Whole(0, 100_000)]
 NodeCount = Annotated[int, Whole(2, 10_000_000)]
 Seed = Annotated[int, Whole(0, 2**32 - 1)]
 FileStem = Annotated[

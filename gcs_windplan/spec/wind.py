@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from gcs_windplan import wind as air  # its readers are imported when first asked for: netCDF4 is heavy
@@ -15,27 +16,65 @@ if TYPE_CHECKING:
     from gcs_windplan.wind import LogLaw, PowerLaw, WindField
 
 
-def build_wind(document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent) -> WindField:
+DAY = 24 * 3600.0
+
+
+@dataclass(frozen=True, slots=True)
+class Departure:
+    """When the flight begins, and for how long after that wind is read [s]."""
+
+    moment: datetime | None
+    lasting: float = DAY
+
+
+@dataclass(frozen=True, slots=True)
+class Winds:
+    """The wind to plan in, and those of an ensemble's members, of which it is the mean."""
+
+    wind: WindField
+    members: tuple[WindField, ...] = ()
+
+
+def build_wind(
+    document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure
+) -> Winds:
     """The wind; raises `WindError`."""
     model = document.model.wind
-    if model.netcdf is not None:
-        forecast = air.read_netcdf(
-            document.beside(model.netcdf),
-            frame,
-            terrain.heights_at,
-            document.model.departure,
-            _overlap(area, terrain.extent),
-            extend=model.extend == "nearest",
-        )
-        return replace(forecast, ground_resolution=terrain.resolution)
+    if model.forecast is not None:
+        return _forecast(document, frame, terrain, area, when)
     field: WindField = air.Calm()
     if model.constant is not None:
         field = air.ConstantWind.from_direction(model.constant.speed, model.constant.from_, frame)
     elif model.paper is not None:
         field = _papers(model.paper)
     if model.profile is None:
-        return field
-    return air.ProfileWind(field, terrain.heights_at, _law(model.profile), terrain.resolution)
+        return Winds(field)
+    return Winds(air.ProfileWind(field, terrain.heights_at, _law(model.profile), terrain.resolution))
+
+
+def _forecast(
+    document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure
+) -> Winds:
+    """The winds of the forecast's files."""
+    model = document.model.wind
+    assert model.forecast is not None
+    profile = model.profile
+    wanted = air.Wanted(
+        frame=frame,
+        ground=terrain.heights_at,
+        departure=when.moment,
+        lasting=when.lasting,
+        area=_overlap(area, terrain.extent),
+        extend=model.extend == "nearest",
+        members=model.members,
+        exponent=None if profile is None else profile.exponent,
+        roughness=None if profile is None else profile.roughness,
+        carried=profile is not None,
+        known_height=None if profile is None else profile.reference_height,
+        ground_resolution=terrain.resolution,
+    )
+    forecast = air.read_forecast([document.beside(name) for name in model.forecast], wanted)
+    return Winds(forecast.mean, forecast.fields if len(forecast.fields) > 1 else ())
 
 
 def _papers(model: PaperWindModel) -> WindField:

@@ -20,6 +20,7 @@ from gcs_windplan.spec.values import (
     Latitude,
     Length,
     Longitude,
+    Member,
     MeshName,
     Number,
     PositiveLength,
@@ -211,7 +212,11 @@ class ProfileModel(Section):
     roughness: PositiveLength | None = Field(
         default=None, description="roughness length of the log law; required there"
     )
-    reference_height: PositiveLength = Field(default=10.0, description="above ground, where the wind is as given")
+    reference_height: PositiveLength = Field(
+        default=10.0,
+        description="above ground, where the wind is as given; with `forecast` only for a file that does not say where"
+        " its wind is",
+    )
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
@@ -235,22 +240,50 @@ class ProfileModel(Section):
 class WindModel(Section):
     """The wind."""
 
-    model_config = one_of("calm", "constant", "paper", "netcdf")
+    model_config = one_of("calm", "constant", "paper", "forecast")
 
     calm: Calm | None = Field(default=None, description="still air")
     constant: ConstantWindModel | None = Field(default=None, description="the same wind everywhere")
     paper: PaperWindModel | None = Field(default=None, description="an analytic field")
-    netcdf: FileName | None = Field(default=None, description="a forecast or reanalysis; relative to this file")
+    forecast: tuple[FileName, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="a file or a list of files with a forecast or reanalysis: GRIB, NetCDF, Open-Meteo's JSON; relative"
+        " to this file",
+    )
+    members: Literal["all"] | tuple[Member, ...] | None = Field(
+        default=None, description="of an ensemble: `all`, or a list of their numbers; only with `forecast`"
+    )
     extend: Literal["nearest"] | None = Field(
-        default=None, description="outside the file's area use the nearest values; only with `netcdf`"
+        default=None, description="outside the file's area use the nearest values; only with `forecast`"
     )
     profile: ProfileModel | None = Field(
-        default=None, description="scales the wind with height above ground; only with `constant` or `paper`"
+        default=None,
+        description="how the wind changes with height above ground; with `constant` or `paper`, and with `forecast` below"
+        " its lowest level and above levels that are all above ground",
     )
 
     @classmethod
+    def expanded(cls, data: object) -> object:
+        """A single file is a list of one."""
+        if isinstance(data, dict) and "forecast" in data and not isinstance(data["forecast"], list | tuple | None):
+            return {**data, "forecast": [data["forecast"]]}
+        return data
+
+    @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
-        """Several winds or none, fields without their partner."""
-        yield from exactly_one(fields, "calm", "constant", "paper", "netcdf")
-        yield from only_with(fields, "extend", "netcdf")
-        yield from only_with(fields, "profile", "constant", "paper")
+        """Several winds or none, fields without their partner, members twice."""
+        yield from exactly_one(fields, "calm", "constant", "paper", "forecast")
+        yield from only_with(fields, "extend", "forecast")
+        yield from only_with(fields, "members", "forecast")
+        yield from only_with(fields, "profile", "constant", "paper", "forecast")
+        members = fields.get("members")
+        if isinstance(members, list | tuple) and len(set(map(str, members))) < len(members):
+            yield Finding(("members",), "names a member twice")
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler.resolve_ref_schema(handler(core))
+        several = schema["properties"]["forecast"]["anyOf"]
+        several.insert(0, several[0]["items"])
+        return schema

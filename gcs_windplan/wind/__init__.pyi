@@ -4,10 +4,12 @@ from .analytic import Diverging as Diverging
 from .analytic import Jet as Jet
 from .analytic import JetReading as JetReading
 from .analytic import Rotation as Rotation
+from .forecast import Forecast as Forecast
+from .forecast import Wanted as Wanted
+from .forecast import read_forecast as read_forecast
 from .field import Ground as Ground
 from .field import WindField as WindField
 from .gridded import GriddedWind as GriddedWind
-from .netcdf import read_netcdf as read_netcdf
 from .profile import LogLaw as LogLaw
 from .profile import PowerLaw as PowerLaw
 from .profile import ProfileLaw as ProfileLaw

@@ -17,6 +17,7 @@ from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.wind.chart import Chart, to_grid
+from gcs_windplan.wind.field import Steady
 
 #: How (14) is read, see `Jet`.
 JetReading: TypeAlias = Literal["unit", "magnitude", "literal"]
@@ -25,7 +26,7 @@ _SAMPLES_PER_UNIT = 20  # of the paper's plane: the figures there show 4 units, 
 
 
 @dataclass(frozen=True, slots=True)
-class Calm:
+class Calm(Steady):
     """Still air everywhere."""
 
     @property
@@ -38,13 +39,13 @@ class Calm:
         """Infinite: it is uniform [m]."""
         return math.inf
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """Zeros (n, 3) [m/s] at points (n, 3)."""
         return np.zeros((len(points), 3))
 
 
 @dataclass(frozen=True, slots=True)
-class ConstantWind:
+class ConstantWind(Steady):
     """The same wind everywhere and always: `east` and `north` [m/s], towards where the air moves.
 
     Without `frame` these lie along the local axes. With it they are true east and north, and are turned at
@@ -93,14 +94,14 @@ class ConstantWind:
         """Infinite: it is uniform [m]; the convergence turns it by a degree in tens of kilometres."""
         return math.inf
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3); the upward component is 0."""
         wind = np.tile([self.east, self.north, 0.0], (len(points), 1))
         return wind if self._chart is None else to_grid(wind, self._chart.at(points)[:, 2])
 
 
 @dataclass(frozen=True, slots=True)
-class Jet:
+class Jet(Steady):
     """The paper's case 1, equation (14): an eastward wind between y = -1 and y = 1.
 
     As printed, (1 - y²) / sqrt((1 - y²)²) is 1 wherever |y| < 1, while the text speaks of varied magnitude.
@@ -132,7 +133,7 @@ class Jet:
         """A twentieth of the plane's unit [m]; no spacing resolves the jump at the jet's border."""
         return self.scale / _SAMPLES_PER_UNIT
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         bulge = 1 - (points[:, 1] / self.scale) ** 2
         if self.reading == "magnitude":
@@ -145,7 +146,7 @@ class Jet:
 
 
 @dataclass(frozen=True, slots=True)
-class Diverging:
+class Diverging(Steady):
     """The paper's case 2, equation (15): the unit vector along (x - 2, x + 1).
 
     Both components depend on x alone, as printed: left of x = -1 it blows to the south-west, between to the
@@ -168,14 +169,14 @@ class Diverging:
         """A twentieth of the plane's unit [m]."""
         return self.scale / _SAMPLES_PER_UNIT
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         x = points[:, 0] / self.scale
         return _unit_field(x - 2, x + 1, self.speed)
 
 
 @dataclass(frozen=True, slots=True)
-class Rotation:
+class Rotation(Steady):
     """The paper's case 3, equation (16): the unit vector along (-y, x), anticlockwise about the local origin.
 
     The origin itself is singular; the air is still there.
@@ -197,7 +198,7 @@ class Rotation:
         """A twentieth of the plane's unit [m]; no spacing resolves the turn at the origin."""
         return self.scale / _SAMPLES_PER_UNIT
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         return _unit_field(-points[:, 1], points[:, 0], self.speed)
 

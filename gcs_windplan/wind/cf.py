@@ -11,8 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from gcs_windplan.constants import INTERNATIONAL_FOOT, KNOT, STATUTE_MILE
+import numpy as np
+
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.units import LENGTH, PRESSURE, SPEED, compact, unit_of
 
 #: What an axis counts: heights are above the ground, altitudes above mean sea level.
 AxisKind: TypeAlias = Literal["latitude", "longitude", "time", "height", "altitude", "pressure"]
@@ -31,29 +33,28 @@ class Variable:
 
     def text(self, attribute: str) -> str:
         """A text attribute in lower case, empty where there is none."""
+        return self.told(attribute).lower()
+
+    def told(self, attribute: str) -> str:
+        """A text attribute as it stands, empty where there is none."""
         value = self.attributes.get(attribute, "")
-        return value.strip().lower() if isinstance(value, str) else ""
+        if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes) and len(value) == 1:
+            value = value[0]
+        if isinstance(value, bytes):
+            value = value.decode("latin-1")
+        return value.strip() if isinstance(value, str) else ""
+
+    def numbers(self, attribute: str) -> tuple[float, ...]:
+        """The numbers of an attribute, empty where there are none."""
+        value = self.attributes.get(attribute, ())
+        words = value.replace(",", " ").split() if isinstance(value, str) else np.atleast_1d(np.asarray(value)).ravel()
+        try:
+            return tuple(float(word) for word in words)
+        except (TypeError, ValueError):
+            return ()
 
 
 File: TypeAlias = Mapping[str, Variable]
-
-_SPEEDS = {
-    "m/s": 1.0, "ms-1": 1.0, "m/sec": 1.0, "meter/second": 1.0, "metre/second": 1.0, "meters/second": 1.0,
-    "metres/second": 1.0, "meterspersecond": 1.0, "metrespersecond": 1.0, "meterpersecond": 1.0,
-    "metersecond-1": 1.0, "metresecond-1": 1.0,
-    "kt": KNOT, "kts": KNOT, "kn": KNOT, "knot": KNOT, "knots": KNOT,
-    "km/h": 1 / 3.6, "kmh-1": 1 / 3.6, "kph": 1 / 3.6, "kmph": 1 / 3.6, "km/hr": 1 / 3.6, "kmhr-1": 1 / 3.6,
-    "mph": STATUTE_MILE / 3600, "mi/h": STATUTE_MILE / 3600, "mih-1": STATUTE_MILE / 3600,
-    "miles/hour": STATUTE_MILE / 3600, "mile/hour": STATUTE_MILE / 3600,
-}  # fmt: skip
-_LENGTHS = {
-    "m": 1.0, "meter": 1.0, "meters": 1.0, "metre": 1.0, "metres": 1.0, "gpm": 1.0, "km": 1000.0,
-    "ft": INTERNATIONAL_FOOT, "foot": INTERNATIONAL_FOOT, "feet": INTERNATIONAL_FOOT,
-}  # fmt: skip
-_PRESSURES = {
-    "pa": 1.0, "pascal": 1.0, "pascals": 1.0, "hpa": 100.0, "hectopascal": 100.0, "hectopascals": 100.0,
-    "mb": 100.0, "mbar": 100.0, "millibar": 100.0, "millibars": 100.0, "kpa": 1000.0,
-}  # fmt: skip
 
 _STANDARD_AXES: dict[str, AxisKind] = {
     "latitude": "latitude",
@@ -75,21 +76,21 @@ _SWAPS = (("eastward", "northward"), ("x_wind", "y_wind"), ("u", "v"))
 
 def speed_unit(variable: Variable) -> float:
     """The unit of a wind component [m/s]. Raises `WindError` if it is missing or unknown."""
-    return _unit(variable, _SPEEDS, "a speed: m/s, knots, km/h or mph")
+    return unit_of(variable.name, variable.told("units"), SPEED)
 
 
 def axis_unit(variable: Variable, kind: AxisKind) -> float:
     """The unit of an axis in degrees, metres or pascals. Raises `WindError` if a level's is unknown."""
     if kind == "pressure":
-        return _unit(variable, _PRESSURES, "a pressure: Pa, hPa or millibars")
+        return unit_of(variable.name, variable.told("units"), PRESSURE)
     if kind in LEVEL_KINDS:
-        return _unit(variable, _LENGTHS, "a height: m, km or ft")
+        return unit_of(variable.name, variable.told("units"), LENGTH)
     return 1.0
 
 
 def is_geopotential(variable: Variable) -> bool:
     """Whether the variable is the geopotential [m²/s²] rather than a height."""
-    return _compact(variable.text("units")) in {"m2s-2", "m2/s2", "j/kg", "jkg-1"}
+    return compact(variable.text("units")) in {"m2s-2", "m2/s2", "j/kg", "jkg-1"}
 
 
 def axis_kind(variable: Variable) -> AxisKind | None:
@@ -103,7 +104,7 @@ def axis_kind(variable: Variable) -> AxisKind | None:
         return "longitude"
     if " since " in units:
         return "time"
-    if units in _PRESSURES:
+    if units in PRESSURE.sizes:
         return "pressure"
     if name in ("altitude", "alt") or "sea level" in variable.text("long_name"):
         return "altitude"
@@ -191,18 +192,3 @@ def _nothing_found(file: File) -> str:
         return f"has speed and direction ({', '.join(polar)}) but no u and v: convert it first"
     names = ", ".join(list(file)[:20]) or "nothing"
     return f"has no eastward and northward wind (eastward_wind, u, u10, ugrd ...); it has {names}"
-
-
-def _unit(variable: Variable, table: Mapping[str, float], wanted: str) -> float:
-    units = variable.text("units")
-    if not units:
-        raise WindError(f"{variable.name} has no units; set its attribute `units` to {wanted}")
-    factor = table.get(units, table.get(_compact(units)))
-    if factor is None:
-        raise WindError(f"{variable.name} is in {variable.attributes['units']!r}, which is not {wanted}")
-    return factor
-
-
-def _compact(units: str) -> str:
-    """`m s**-1`, `m s^-1`, `m.s-1` and `m s-1` written in one way."""
-    return re.sub(r"[\s*^.]", "", units)

@@ -67,16 +67,20 @@ class Chart:
         return np.stack([latitude, longitude, self.frame.convergence(places)], axis=-1)
 
     def _powers(self, places: FloatArray) -> FloatArray:
-        """The monomials x^i y^j with i + j ≤ 6 of places scaled to [-1, 1], shape (n, 28)."""
-        x, y = places[:, 0] / self.reach, places[:, 1] / self.reach
-        powers = np.empty(((_DEGREE + 1) * (_DEGREE + 2) // 2, len(x)))
-        powers[0] = 1.0
-        row = 1
-        for total in range(1, _DEGREE + 1):  # each degree is the one before times x, and its last one times y
-            np.multiply(powers[row - total : row], x, out=powers[row : row + total])
-            np.multiply(powers[row - 1], y, out=powers[row + total])
-            row += total + 1
-        return powers.T
+        return monomials(places[:, :2] / self.reach, _DEGREE)
+
+
+def monomials(places: FloatArray, degree: int) -> FloatArray:
+    """The monomials x^i y^j with i + j ≤ degree of places (n, 2) scaled to [-1, 1], shape (n, k)."""
+    x, y = places[:, 0], places[:, 1]
+    powers = np.empty(((degree + 1) * (degree + 2) // 2, len(x)))
+    powers[0] = 1.0
+    row = 1
+    for total in range(1, degree + 1):  # each degree is the one before times x, and its last one times y
+        np.multiply(powers[row - total : row], x, out=powers[row : row + total])
+        np.multiply(powers[row - 1], y, out=powers[row + total])
+        row += total + 1
+    return powers.T
 
 
 def to_grid(true_wind: FloatArray, convergence: FloatArray) -> FloatArray:

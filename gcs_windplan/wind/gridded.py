@@ -1,161 +1,153 @@
-"""Wind on a latitude-longitude grid: what forecast and reanalysis files hold."""
+"""Wind on a grid in four dimensions: what forecasts and reanalyses hold, at work in the local frame."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cores import available_cores, spread
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import LocalFrame
-from gcs_windplan.kernels.interpolation import interpolate_columns
-from gcs_windplan.wind.chart import Chart, to_grid
-from gcs_windplan.wind.field import Ground
-from gcs_windplan.wind.profile import heights_above
+from gcs_windplan.kernels.interpolation import Columns, Law, interpolate_columns
+from gcs_windplan.wind.chart import to_grid
+from gcs_windplan.wind.field import STEADY, Ground
+from gcs_windplan.wind.placement import Placement
 
-METRES_PER_DEGREE = 111_195.0  # [m] of a meridian on the mean earth radius, 6371 km (IUGG 1980)
 _EDGE = 1.0  # [m] a point may lie this far outside of the grid and still be taken as on its edge
-_TOP = 0.01  # [m] the same above the highest level
+_MANY = 50_000  # points that are worth more than one core
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class GriddedWind:
-    """Wind at the nodes of a rectilinear latitude-longitude grid, at levels and times.
+    """Wind at the nodes of a grid, at times and levels; linear between them.
 
-    `latitudes` (ny,) and `longitudes` (nx,) [deg] ascend; `times` (nt,) [s since departure] too. `u` and `v`
-    (nt, nl, ny, nx) [m/s] blow towards true east and north; `at` turns them into the local grid. `heights`
-    [m] is (nl,) or (nt, nl, ny, nx), ascending along the levels: above the ground if `ground` is given,
-    otherwise above mean sea level. One level alone holds at every height.
+    `columns` holds what `kernels.interpolation` says, its times in seconds since 1970, UTC; `zero` is the departure
+    among them, from which `at` counts. `law` leads the wind below the lowest level down to the ground. Above the
+    highest level (or where `law` carries it to) the wind is not known: NaN.
 
-    Between levels, nodes and times the wind is linear. Below the lowest level the lowest level's wind is
-    taken, which is rather too strong than too weak. Above the highest level it is not known: NaN. Everything else
-    outside raises `WindError`: outside of the area unless `extend` (then the nearest edge's wind is taken), and
-    outside of `window` [s since departure], which is from the first to the last time, and always for a single time,
-    if not given. `ground_resolution` [m] is the ground's own, where known: wind at levels above the ground changes
-    with it.
+    Everything else outside raises `WindError`: outside of the area unless `extend` (then the nearest edge's wind is
+    taken), and outside of `window` [s since 1970]. `ground` is the terrain under the route; without one the forecast's
+    own counts. `ground_resolution` [m] is the terrain's, where known: wind at levels above the ground changes with it.
     """
 
     name: str
-    frame: LocalFrame
-    latitudes: FloatArray
-    longitudes: FloatArray
-    heights: FloatArray
-    times: FloatArray
-    u: FloatArray
-    v: FloatArray
+    placement: Placement
+    columns: Columns
+    law: Law
+    zero: float
+    window: tuple[float, float] = (-math.inf, math.inf)
     ground: Ground | None = None
-    window: tuple[float, float] | None = None
     extend: bool = False
     ground_resolution: float = math.inf
-    _chart: Chart = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        for axis in ("latitudes", "longitudes", "times"):
-            self._set(axis, _ascending(axis, getattr(self, axis)))
-        middle = (self.longitudes[0] + self.longitudes[-1]) / 2
-        turns = round((self.frame.origin.longitude_deg - middle) / 360)
-        self._set("longitudes", self.longitudes + 360.0 * turns)
-        shape = (len(self.times), self.heights.shape[1 if self.heights.ndim == 4 else 0], *self._horizontal)
-        for part in ("u", "v", "heights"):
-            self._set(part, _filled(part, getattr(self, part), shape))
-        if not np.all(np.diff(self.heights, axis=1) > 0):
-            raise WindError(f"the levels of {self.name} do not ascend in every column")
-        if self.window is None:
-            single = len(self.times) == 1
-            self._set("window", (-math.inf, math.inf) if single else (self.times[0], self.times[-1]))
-        self._set("_chart", Chart(self.frame))
+        check_columns(self.columns, self.name)
+        rows, columns = len(self.columns.rows), len(self.columns.columns)
+        if (rows, columns) != (len(self.placement.rows), len(self.placement.columns)):
+            raise WindError(f"the wind's {rows} rows and {columns} columns are not those of its grid ({self.name})")
 
     @property
     def resolution(self) -> float:
         """Half of the smallest spacing of the grid [m], or the ground's own where the levels follow it."""
-        south_north = np.diff(self.latitudes) * METRES_PER_DEGREE
-        widest = np.cos(np.radians(np.abs(self.latitudes).max()))
-        west_east = np.diff(self.longitudes) * METRES_PER_DEGREE * widest
-        across = float(min(np.min(south_north, initial=math.inf), np.min(west_east, initial=math.inf)) / 2)
-        return across if self.ground is None else min(across, self.ground_resolution)
-
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
-        """The wind (n, 3) [m/s] at points (n, 3), `seconds` after departure; the upward component is 0.
-
-        NaN above the highest level. Raises `WindError` outside of the area or time.
-        """
-        self._check_time(seconds)
-        if not np.isfinite(points).all():
-            raise WindError("the wind is asked for at a place that is not finite")
-        places = self._chart.at(points)
-        if not self.extend:
-            self._check_area(places)
-        z = points[:, 2] if self.ground is None else heights_above(self.ground, points)
-        result = interpolate_columns(
-            self.u, self.v, self.heights, self.times, self.latitudes, self.longitudes,
-            places, np.ascontiguousarray(z, dtype=np.float64), np.full(len(points), float(seconds)),
-        )  # fmt: skip
-        unknown = result[:, 2] > _TOP  # above the highest level
-        result[:, 2] = 0.0
-        result[unknown] = np.nan
-        return to_grid(result, places[:, 2])
+        across = self.placement.spacing / 2
+        return min(across, self.ground_resolution) if len(self.columns.above) else across
 
     @property
-    def _horizontal(self) -> tuple[int, int]:
-        return len(self.latitudes), len(self.longitudes)
+    def times(self) -> FloatArray:
+        """Its times [s since departure] where it has more than one."""
+        return self.columns.times - self.zero if len(self.columns.times) > 1 else STEADY
 
-    def _set(self, name: str, value: object) -> None:
-        object.__setattr__(self, name, value)
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
+        """The wind (n, 3) [m/s] at points (n, 3), `seconds` (one, or (n,)) after departure; its upward part is 0.
 
-    def _check_time(self, seconds: float) -> None:
-        first, last = self.window or (-math.inf, math.inf)
-        if first <= seconds <= last:
-            return
-        early = seconds < first
-        gap, side = (first - seconds, "before its first") if early else (seconds - last, "after its last")
-        raise WindError(
-            f"the wind is asked for {seconds / 3600:.2f} h after departure, {gap / 3600:.2f} h {side} usable "
-            f"time ({self.name}): choose another departure, or a file that reaches further"
+        NaN where the height is above what is known. Raises `WindError` outside of the area or time.
+        """
+        when = self._when(seconds, len(points))
+        places = self.placed(points)
+        z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
+        ground = ground_under(self.ground, points)
+        return to_grid(self.interpolated(places, z, ground, when), places[:, 2])
+
+    def placed(self, points: FloatArray) -> FloatArray:
+        """Row, column and convergence of points (n, 3), shape (n, 3). Raises `WindError` outside of the area."""
+        if not np.isfinite(points).all():
+            raise WindError("the wind is asked for at a place that is not finite")
+        places = self.placement.at(points)
+        if not self.extend:
+            self._check_area(points, places)
+        return np.ascontiguousarray(places)
+
+    def interpolated(self, places: FloatArray, z: FloatArray, ground: FloatArray, when: FloatArray) -> FloatArray:
+        """The wind towards true east and north at what the kernel takes, on as many cores as are worth it."""
+        if len(z) < _MANY or available_cores() == 1:
+            return interpolate_columns(self.columns, self.law, places, z, ground, when)
+        size = -(-len(z) // available_cores())
+        parts = [slice(begin, begin + size) for begin in range(0, len(z), size)]
+        work = spread(
+            lambda p: interpolate_columns(self.columns, self.law, places[p], z[p], ground[p], when[p]), parts
         )
+        return np.concatenate(list(work))
 
-    def _check_area(self, places: FloatArray) -> None:
-        missing = misses(places, self.latitudes, self.longitudes)
+    def _when(self, seconds: float | FloatArray, count: int) -> FloatArray:
+        """The time of each point [s since 1970]. Raises `WindError` outside of the usable times."""
+        when = np.broadcast_to(np.asarray(seconds, dtype=np.float64) + self.zero, count)
+        first, last = self.window
+        if count and not (when.min() >= first and when.max() <= last):
+            early = first - float(when.min())
+            late = float(when.max()) - last
+            gap, side = (early, "before its first") if early > late else (late, "after its last")
+            asked = (float(when.min()) if early > late else float(when.max())) - self.zero
+            raise WindError(
+                f"the wind is asked for {asked / 3600:.2f} h after departure, {gap / 3600:.2f} h {side} usable time"
+                f" ({self.name}): choose another departure, or a file that reaches further"
+            )
+        return np.ascontiguousarray(when)
+
+    def _check_area(self, points: FloatArray, places: FloatArray) -> None:
+        missing = self.placement.misses(places)
         if not len(missing) or missing.max() <= _EDGE:
             return
         worst = int(np.argmax(missing))
-        latitude, longitude = places[worst, :2]
+        latitude, longitude = self.placement.frame.to_geographic(points[worst : worst + 1])
         raise WindError(
-            f"the wind ends {missing[worst] / 1000:.1f} km short of {latitude:.5f}, {longitude:.5f}: it "
-            f"covers latitudes {self.latitudes[0]:.3f} to {self.latitudes[-1]:.3f} and longitudes "
-            f"{self.longitudes[0]:.3f} to {self.longitudes[-1]:.3f} ({self.name}); take a larger file, or "
-            "say `extend: nearest` to take the wind at its edge"
+            f"the wind ends {missing[worst] / 1000:.1f} km short of {latitude[0]:.5f}, {longitude[0]:.5f}:"
+            f" {self.placement.covers()} ({self.name}); take a larger file, or say `extend: nearest` to take the wind"
+            " at its edge"
         )
 
 
-def misses(places: FloatArray, latitudes: FloatArray, longitudes: FloatArray) -> FloatArray:
-    """How far places (n, 2 or more) [deg] lie outside of a grid with ascending axes [m], shape (n,)."""
-    south_north = _beyond(places[:, 0], latitudes)
-    west_east = _beyond(places[:, 1], longitudes) * np.cos(np.radians(places[:, 0]))
-    distance: FloatArray = np.hypot(south_north, west_east) * METRES_PER_DEGREE
-    return distance
+def ground_under(ground: Ground | None, points: FloatArray) -> FloatArray:
+    """The ground's height under points (n, 3), shape (n,); NaN where nobody knows."""
+    if ground is None:
+        return np.full(len(points), np.nan)
+    return np.ascontiguousarray(ground(points), dtype=np.float64)
 
 
-def _beyond(values: FloatArray, axis: FloatArray) -> FloatArray:
-    outside: FloatArray = values - np.clip(values, axis[0], axis[-1])
-    return outside
-
-
-def _ascending(name: str, values: FloatArray) -> FloatArray:
-    axis = np.ascontiguousarray(values, dtype=np.float64)
-    if axis.ndim != 1 or not len(axis) or not np.isfinite(axis).all() or not np.all(np.diff(axis) > 0):
-        raise WindError(f"the wind's {name} have to be finite and ascend, each value once")
-    return axis
-
-
-def _filled(name: str, values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """A finite, contiguous array of `shape`; one value a level is repeated in every column."""
-    array = np.asarray(values, dtype=np.float64)
-    if array.shape == shape[1:2]:
-        array = np.broadcast_to(array[np.newaxis, :, np.newaxis, np.newaxis], shape)
-    if array.shape != shape:
-        raise WindError(f"the wind's {name} have the shape {array.shape}, not {shape} (time, level, lat, lon)")
-    if not np.isfinite(array).all():
-        raise WindError(f"the wind's {name} are not finite everywhere")
-    return np.ascontiguousarray(array)
+def check_columns(columns: Columns, name: str) -> None:
+    """Raise `WindError` unless the shapes fit and every axis and column ascends."""
+    nt, ny, nx, levels, _ = columns.winds.shape
+    na = len(columns.above)
+    shared = columns.heights.shape[:3] == (1, 1, 1)
+    for what, found, right in (
+        ("rows", columns.rows.shape, (ny,)),
+        ("columns", columns.columns.shape, (nx,)),
+        ("times", columns.times.shape, (nt,)),
+        ("terrain", columns.terrain.shape, (ny, nx)),
+        ("roughness", columns.roughness.shape, (ny, nx)),
+        ("heights", columns.heights.shape, ((1, 1, 1) if shared else (nt, ny, nx)) + (levels - na,)),
+    ):
+        if found != right:
+            raise WindError(f"the wind's {what} have the shape {found}, not {right} ({name})")
+    for what, axis in (
+        ("rows", columns.rows), ("columns", columns.columns), ("times", columns.times), ("levels", columns.above),
+    ):  # fmt: skip
+        if not np.isfinite(axis).all() or not (np.diff(axis) > 0).all():
+            raise WindError(f"the wind's {what} have to be finite and ascend, each value once ({name})")
+    if not np.isfinite(columns.winds).all() or not np.isfinite(columns.heights).all():
+        raise WindError(f"the wind is not finite everywhere ({name})")
+    if not (np.diff(columns.heights, axis=3) > 0).all():
+        raise WindError(f"the levels of {name} do not ascend in every column")
+    if not (columns.roughness > 0).all():
+        raise WindError(f"the roughness length is not above 0 everywhere ({name})")

@@ -110,7 +110,12 @@ class ProfileWind:
         """The finer one of the field's and the ground's [m]."""
         return min(self.field.resolution, self.ground_resolution)
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    @property
+    def times(self) -> FloatArray:
+        """The field's own."""
+        return self.field.times
+
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         factor = self.law.factor(heights_above(self.ground, points))
         return self.field.at(points, seconds) * factor[:, np.newaxis]

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from gcs_windplan.cost import integrate, performance_of
-from gcs_windplan.kernels import best_first
+from gcs_windplan.kernels import edges
 from gcs_windplan.kernels.triangle import ground_speed, leg_seconds, wind_angle
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import ConstantWind, Diverging, Jet, Rotation
@@ -43,8 +43,8 @@ def test_slowness_equals_its_twin(vehicle, direction, wind):
 @given(vehicles, directions, st.tuples(speeds, speeds, st.just(0.0)), st.tuples(speeds, speeds, st.just(0.0)))
 def test_edge_time_equals_its_twin(vehicle, vector, a, b):
     expected = naive_edge_time(vehicle, np.array(vector) * 100, a, b)
-    setting = best_first.Setting(best_first.TIME, 0.0, 0.0, 0.0)
-    found = best_first.edge_between(performance_of(vehicle), setting, *(np.array(vector) * 100), *a, *b)
+    setting = edges.Setting(edges.TIME, 0.0, 0.0, 0.0)
+    found = edges.edge_between(performance_of(vehicle), setting, *(np.array(vector) * 100), *a, *b)
     assert found == pytest.approx(expected, rel=1e-9) or expected > 1e8
 
 

@@ -23,7 +23,7 @@ from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.vehicle import SpeedModel, Vehicle
 from gcs_windplan.veil import Clearance, lay_grid
 from gcs_windplan.wind import Diverging, Jet, Rotation
-from gcs_windplan.wind.field import WindField
+from gcs_windplan.wind.field import Steady, WindField
 from tests.oracles.zermelo import PlaneWind
 
 _GROUND = Clearance(Dem.local(np.full((21, 21), -10.0), -10.0, 10.0, 1.0), 1.0)  # flat, and far below
@@ -31,14 +31,14 @@ _LAYER = 10.0  # above it: at 0, as start and goal are
 
 
 @dataclass(frozen=True)
-class PlaneField:
+class PlaneField(Steady):
     """A wind given by a formula for the plane."""
 
     formula: PlaneWind
     name: str
     resolution: float = 0.05
 
-    def at(self, points: FloatArray, seconds: float = 0.0) -> FloatArray:
+    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         east, north = self.formula(points[:, 0], points[:, 1])
         return np.stack([east, north, np.zeros_like(east)], axis=-1)
 

@@ -16,7 +16,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from gcs_windplan.cost import CostChoice, LegCost, performance_of
-from gcs_windplan.kernels.best_first import Setting, edge_between, remaining, search_csr
+from gcs_windplan.kernels.best_first import search_csr
+from gcs_windplan.kernels.edges import Setting, edge_between, remaining
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import Calm
 
@@ -124,8 +125,9 @@ def test_all_bounds_find_the_same_cost(seed, model):
         ("h2", bounds["h2"], np.empty(0)),
     ):
         _, costs[name], expanded[name], _ = search_csr(
-            first, neighbours, points, winds, estimates, performance, setting, 0, len(points) - 1
-        )
+            first, neighbours, points, winds, estimates, performance, setting, 0, len(points) - 1,
+            None, 0.0, 0, None, np.zeros(2, dtype=np.int64),
+        )  # fmt: skip
     assert math.isfinite(costs["none"])
     assert costs["h1"] == pytest.approx(costs["none"], rel=rounding)
     assert costs["h2"] == pytest.approx(costs["none"], rel=rounding)

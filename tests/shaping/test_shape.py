@@ -18,6 +18,7 @@ from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.veil import Clearance, lay_grid
 from gcs_windplan.wind import Calm
+from gcs_windplan.wind.field import Steady
 from tests.worlds import AREA, WavyWind, over_ground, rough_dem
 
 
@@ -68,7 +69,7 @@ def test_relax_leaves_an_unflyable_line_alone():
 
 
 @dataclass(frozen=True)
-class Disc:
+class Disc(Steady):
     """A strong wind inside a disc, a light one outside: the jump has a curved border, and chords of it are short."""
 
     resolution: float = 0.05

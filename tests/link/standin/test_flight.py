@@ -18,6 +18,7 @@ from gcs_windplan.link.standin.items import StoredItem
 from gcs_windplan.link.standin.world import world_at
 from gcs_windplan.mission import Home
 from gcs_windplan.terrain import Hill, hills
+from gcs_windplan.wind.field import Steady
 
 from .scenes import FRAME, HOME, Scene, at, fly, free, home_again, scene, speed, takeoff, wind_from
 from .speaking import DELAY, JUMP, LAND, LOITER_TIME, WAYPOINT
@@ -56,7 +57,7 @@ def test_measured_5_metres_of_head_wind_at_30_degrees_of_lean():
 
 
 @dataclass(frozen=True)
-class Shear:
+class Shear(Steady):
     """A head wind that grows to the north, 2 m/s a kilometre."""
 
     name: str = "shear"
@@ -442,7 +443,7 @@ def test_disarmed_in_the_air_it_falls():
 
 
 @dataclass(frozen=True)
-class Ending:
+class Ending(Steady):
     """A wind that is known up to 1 km north, and no higher than 350 m."""
 
     name: str = "ending"

@@ -1,0 +1,284 @@
+"""What an edge of the graph costs: in steady wind, in changing wind, and over the members of an ensemble.
+
+Edges take the wind as linear between their two nodes. Where both ends can be flown, so can all between: the winds in
+which a track is flyable are a convex set.
+
+A search tells by what it hands over which world it is:
+
+    winds (nodes, 3), times None                     steady
+    winds (times, nodes, 3), each None               changing: linear in time between `times`
+    winds (members, times, nodes, 3), each given     several members: the cost is a quantile over them
+
+Numba compiles only the branch that the winds' dimensions ask for.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.triangle import PAPER, Performance, leg_seconds, wind_angle
+
+_ROUNDS = 20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
+_SAME = 1e-6  # [s]
+
+DISTANCE, ANGLE, HYBRID, TIME = 0.0, 1.0, 2.0, 3.0
+
+
+class Setting(NamedTuple):
+    """What a search minimises, and where to."""
+
+    code: float  # one of the four above
+    goal_e: float  # [m], as are the next two
+    goal_n: float
+    goal_z: float
+    angle_weight: float = 0.0  # hybrid (11)
+    distance_weight: float = 0.0
+    straight: float = 1.0  # from start to goal [m]
+    ball_e: float = 0.0  # all winds lie in a ball about this one [m/s]
+    ball_n: float = 0.0
+    ball_radius: float = 0.0
+    ball_up: float = 0.0  # the strongest up-draught and down-draught [m/s]
+    ball_down: float = 0.0
+
+
+@numba.njit(error_model="numpy", forceinline=True)
+def cost_of(
+    setting: Setting, seconds: float,
+    level: float, east: float, north: float, climb: float,
+    wind_e: float, wind_n: float, wind_u: float,
+) -> float:  # fmt: skip
+    """The cost of an edge that takes so many seconds and ends in a wind: the angle is that at the arrival, (10)."""
+    code = setting.code
+    if code == TIME or seconds == math.inf:
+        return seconds
+    if code == DISTANCE:
+        return math.sqrt(level * level + climb * climb)
+    angle: float = wind_angle(level * east, level * north, climb, wind_e, wind_n, wind_u)
+    if code == ANGLE:
+        return angle
+    weight: float = setting.angle_weight
+    return weight * angle / math.pi
+
+
+@numba.njit(error_model="numpy", forceinline=True)
+def edge_cost(
+    performance: Performance, setting: Setting,
+    level: float, east: float, north: float, climb: float,
+    ae: float, an: float, au: float,
+    be: float, bn: float, bu: float,
+) -> float:  # fmt: skip
+    """The cost of an edge in the search; infinite where it cannot be flown.
+
+    The edge goes `level` [m] along the unit track (east, north) and gains `climb` [m] in a wind from a to b [m/s]. Its
+    time is the mean of the times in both winds (the trapezoidal rule).
+    """
+    outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
+    if outset == math.inf:
+        return outset
+    seconds: float = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
+    cost: float = cost_of(setting, seconds, level, east, north, climb, be, bn, bu)
+    return cost
+
+
+@numba.njit(cache=True, error_model="numpy")
+def edge_between(
+    performance: Performance, setting: Setting,
+    de: float, dn: float, dz: float,
+    ae: float, an: float, au: float,
+    be: float, bn: float, bu: float,
+) -> float:  # fmt: skip
+    """`edge_cost` of an edge given by its vector (de, dn, dz) [m]."""
+    level = math.sqrt(de * de + dn * dn)
+    if level == 0.0:
+        if dz == 0.0:
+            return 0.0
+        return edge_cost(performance, setting, 0.0, 0.0, 0.0, dz, ae, an, au, be, bn, bu)
+    return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
+
+
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def remaining(performance: Performance, setting: Setting, e: float, n: float, z: float) -> float:
+    """The estimate from a place to the goal; for distance and time a consistent lower bound.
+
+    Time: whatever the wind, it lies in a ball (centre c, radius r), so the vehicle is never faster than one with
+    airspeed V + r in the constant wind c; times in a constant wind obey the triangle inequality. The paper's model
+    does so only for c up to half of the airspeed (its indicatrix is dented beyond): then `search/` centres the ball
+    on 0.
+    """
+    de, dn, dz = setting.goal_e - e, setting.goal_n - n, setting.goal_z - z
+    level2 = de * de + dn * dn
+    code = setting.code
+    if code != TIME:
+        distance = math.sqrt(level2 + dz * dz)
+        if code == DISTANCE:
+            return distance
+        if code == HYBRID:
+            share: float = setting.distance_weight * distance / max(distance, setting.straight)
+            return share
+        return 0.0
+    vertical = 0.0
+    if dz > 0.0:
+        vertical = dz / (performance.climb + setting.ball_up)
+    elif dz < 0.0:
+        vertical = -dz / (performance.descent + setting.ball_down)
+    if level2 == 0.0:
+        return vertical
+    level = math.sqrt(level2)
+    airspeed = performance.airspeed + setting.ball_radius
+    along = (setting.ball_e * de + setting.ball_n * dn) / level
+    if performance.model == PAPER:
+        speed = airspeed + along
+    else:
+        cross = (setting.ball_n * de - setting.ball_e * dn) / level
+        rest = airspeed * airspeed - cross * cross
+        if rest < 0.0:
+            return math.inf
+        speed = math.sqrt(rest) + along
+    if speed <= 0.0:
+        return math.inf
+    seconds: float = max(vertical, level / speed)
+    return seconds
+
+
+@numba.njit(error_model="numpy", forceinline=True)
+def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
+    """The last time not after the clock, the next one, and the share of the way to it."""
+    low, high = 0, times.size - 1
+    if high == 0 or clock <= times[0]:
+        return 0, 0, 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if times[middle] <= clock:
+            low = middle
+        else:
+            high = middle
+    return low, low + 1, min((clock - times[low]) / (times[low + 1] - times[low]), 1.0)
+
+
+@numba.njit(error_model="numpy")
+def edge_in_time(
+    performance: Performance, setting: Setting, times: FloatArray, tally: IntArray,
+    from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    level: float, east: float, north: float, climb: float, clock: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Cost and seconds of an edge that begins at `clock` [s] in winds (times, nodes, 3), linear between `times`.
+
+    The time is the mean of the times in the wind at the outset and in that at the end when it is reached: the
+    trapezoidal rule for ds/dt = v(s, t), solved by iteration. Infinite where it cannot be flown, and beyond the last
+    time. `tally` counts edges that lasted beyond, and those that could not be flown then but can be later.
+    """
+    k, k1, late = _moment(times, clock)
+    ae = (1.0 - late) * from_winds[k, node, 0] + late * from_winds[k1, node, 0]
+    an = (1.0 - late) * from_winds[k, node, 1] + late * from_winds[k1, node, 1]
+    au = (1.0 - late) * from_winds[k, node, 2] + late * from_winds[k1, node, 2]
+    outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
+    seconds, be, bn, bu = outset, ae, an, au
+    for _ in range(_ROUNDS):
+        if not seconds < math.inf:
+            break
+        if clock + seconds > times[times.size - 1] and times.size > 1:
+            tally[0] += 1
+            return math.inf, math.inf
+        i, i1, share = _moment(times, clock + seconds)
+        be = (1.0 - share) * to_winds[i, to, 0] + share * to_winds[i1, to, 0]
+        bn = (1.0 - share) * to_winds[i, to, 1] + share * to_winds[i1, to, 1]
+        bu = (1.0 - share) * to_winds[i, to, 2] + share * to_winds[i1, to, 2]
+        before = seconds
+        seconds = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
+        if abs(seconds - before) < _SAME:
+            break
+    if seconds < math.inf:
+        return cost_of(setting, seconds, level, east, north, climb, be, bn, bu), seconds
+    for later in range(k1, times.size):
+        we, wn, wu = from_winds[later, node, 0], from_winds[later, node, 1], from_winds[later, node, 2]
+        if leg_seconds(performance, level, east, north, climb, we, wn, wu) < math.inf:
+            tally[1] += 1
+            break
+    return math.inf, math.inf
+
+
+@numba.njit(error_model="numpy")
+def edge_of_members(
+    performance: Performance, setting: Setting, times: FloatArray, tally: IntArray, rank: int, each: FloatArray,
+    from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    level: float, east: float, north: float, climb: float, clock: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Cost and seconds of an edge in the member that `rank` others undercut, those that cannot fly it last.
+
+    `each` (2, members) is scratch.
+    """
+    for member in range(each.shape[1]):
+        cost, seconds = edge_in_time(
+            performance, setting, times, tally, from_winds[member], node, to_winds[member], to,
+            level, east, north, climb, clock,
+        )  # fmt: skip
+        place = member
+        while place > 0 and each[0, place - 1] > cost:  # few members: insertion sort
+            each[0, place], each[1, place] = each[0, place - 1], each[1, place - 1]
+            place -= 1
+        each[0, place], each[1, place] = cost, seconds
+    return each[0, rank], each[1, rank]
+
+
+@numba.njit(error_model="numpy", forceinline=True)
+def travel(
+    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
+    each: FloatArray | None, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    level: float, east: float, north: float, climb: float, clock: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Cost and seconds of an edge between two nodes in whichever world; no seconds are told in a steady one."""
+    if from_winds.ndim == 2:
+        steady: float = edge_cost(
+            performance, setting, level, east, north, climb,
+            from_winds[node, 0], from_winds[node, 1], from_winds[node, 2],
+            to_winds[to, 0], to_winds[to, 1], to_winds[to, 2],
+        )  # fmt: skip
+        return steady, 0.0
+    if from_winds.ndim == 3:
+        cost, seconds = edge_in_time(
+            performance, setting, times, tally, from_winds, node, to_winds, to, level, east, north, climb, clock
+        )
+        return cost, seconds
+    cost, seconds = edge_of_members(
+        performance, setting, times, tally, rank, each, from_winds, node, to_winds, to,
+        level, east, north, climb, clock,
+    )  # fmt: skip
+    return cost, seconds
+
+
+@numba.njit(error_model="numpy", forceinline=True)
+def travel_between(
+    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
+    each: FloatArray | None, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    de: float, dn: float, dz: float, clock: float,
+) -> tuple[float, float]:  # fmt: skip
+    """`travel` along an edge given by its vector (de, dn, dz) [m]."""
+    level = math.sqrt(de * de + dn * dn)
+    if level == 0.0 and dz == 0.0:
+        return 0.0, 0.0
+    east, north = (de / level, dn / level) if level > 0.0 else (0.0, 0.0)
+    cost, seconds = travel(
+        performance, setting, times, tally, rank, each, from_winds, node, to_winds, to, level, east, north, dz, clock
+    )
+    return cost, seconds
+
+
+@numba.njit(cache=True, error_model="numpy")
+def joins(
+    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
+    each: FloatArray | None, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,
+    clock: float,
+) -> FloatArray:  # fmt: skip
+    """Cost and seconds (n, 2) of the edges from a site to some nodes, along vectors (n, 3) [m]."""
+    result = np.empty((nodes.size, 2))
+    for i in range(nodes.size):
+        result[i, 0], result[i, 1] = travel_between(
+            performance, setting, times, tally, rank, each, site_winds, 0, winds, nodes[i],
+            vectors[i, 0], vectors[i, 1], vectors[i, 2], clock,
+        )  # fmt: skip
+    return result
