@@ -6,7 +6,7 @@ request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shapi
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -30,10 +30,11 @@ from gcs_windplan.siting import (
 )
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
-from gcs_windplan.wind.field import WindField
 
 _WAITS = tuple(k / 8 for k in range(1, 9))  # of the flight's duration: who waits longer cannot arrive earlier
 _WORTH_WAITING = 0.01  # of the flight's duration
+_TRIED_EVERY = 600.0  # [s] later departures that are tried where no route exists
+_MOST_TRIED = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +116,13 @@ class Ready:
     windy: WindyVeil
     seconds: float
 
+    def in_the_mean(self) -> Ready:
+        """The same without the members of an ensemble: only their mean blows."""
+        if not self.request.members:
+            return self
+        request = replace(self.request, members=())
+        return replace(self, request=request, windy=blow(self.windy.veil, request.wind))
+
 
 def plan_route(request: Request) -> Plan:
     """Plan the request's route by its own cost.
@@ -154,18 +162,24 @@ def prepare(request: Request) -> Ready:
 
 
 def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
-    """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does."""
+    """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
+
+    Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the whole:
+    the one for the members' mean is flown in all members too, and the better one is taken.
+    """
     request = ready.request
-    found = _find_route(ready, choice, begin, request.members)
-    flight, spread = _flown(request, found, begin)
-    if request.members and choice.name == "time":
-        calm = replace(ready, windy=blow(ready.windy.veil, request.wind))
-        other = _find_route(calm, choice, begin, ())
-        flown, spread_of_other = _flown(request, other, begin)
-        assert spread is not None
+    try:
+        found = find_route(ready, choice, begin)
+    except NoRouteError as error:
+        raise NoRouteError(f"{error}{_opens(ready, begin)}", error.cuts) from error
+    spread = spread_of(request, found.points, begin)
+    if spread is not None and choice.name == "time":
+        other = find_route(ready.in_the_mean(), choice, begin)
+        spread_of_other = spread_of(request, other.points, begin)
         assert spread_of_other is not None
         if spread_of_other.at(request.robust) < spread.at(request.robust):
-            found, flight, spread = other, flown, spread_of_other
+            found, spread = other, spread_of_other
+    flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin)
     effort = Effort(
         ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
         found.shaping_seconds,
@@ -186,11 +200,11 @@ def _lay_veil(
 
 
 @dataclass(slots=True, eq=False)
-class _Found:
-    """A route on its way: its points, what it costs, what finding it took, and when the next section begins."""
+class FoundRoute:
+    """A route: its points (n, 3), when it arrives [s since departure], what it costs, and what finding it took."""
 
-    route: list[FloatArray]
-    clock: float
+    points: FloatArray
+    arrival: float
     cost: float = 0.0
     graph_cost: float = 0.0
     vertices: int = 1
@@ -200,19 +214,16 @@ class _Found:
     shaping_seconds: float = 0.0
 
 
-def _find_route(ready: Ready, choice: CostChoice, begin: float, members: tuple[WindField, ...]) -> _Found:
+def find_route(
+    ready: Ready, choice: CostChoice, begin: float, shaping: Callable[..., FloatArray] = shape
+) -> FoundRoute:
     """Search and shape each section between two sites, one after the other in time."""
-    request = ready.request
-    found = _Found([ready.sites[:1]], begin)
+    found = FoundRoute(ready.sites[:1], begin)
     for start, goal in pairwise(ready.sites):
-        straight = float(np.linalg.norm(goal - start))
-        cost = LegCost(
-            choice, request.wind, request.vehicle, ready.windy.veil.edge_length, straight, found.clock, members,
-            request.robust,
-        )  # fmt: skip
-        path = find_path(ready.windy, cost, start, goal, found.clock)
+        cost = _cost_between(ready, choice, start, goal, found.arrival)
+        path = find_path(ready.windy, cost, start, goal, found.arrival)
         since = time.perf_counter()
-        shaped = shape(path.points, cost, ready.rules)
+        shaped = shaping(path.points, cost, ready.rules)
         found.shaping_seconds += time.perf_counter() - since
         found.search_seconds += path.seconds
         found.expanded += path.expanded
@@ -221,19 +232,25 @@ def _find_route(ready: Ready, choice: CostChoice, begin: float, members: tuple[W
         prices, times = cost.priced(shaped)
         found.cost += float(np.sum(prices))
         found.graph_cost += cost.of_polyline(path.points)
-        found.route.append(shaped[1:])
-        found.clock = float(times[-1])
+        found.points = np.concatenate([found.points, shaped[1:]])
+        found.arrival = float(times[-1])
     return found
 
 
-def _flown(request: Request, found: _Found, begin: float) -> tuple[Flight, Spread | None]:
-    """The route flown in the request's wind, and in every member."""
-    points = np.concatenate(found.route)
-    flight = fly(points, request.frame, request.terrain, request.wind, request.vehicle, begin)
+def _cost_between(ready: Ready, choice: CostChoice, start: FloatArray, goal: FloatArray, begin: float) -> LegCost:
+    """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
+    request = ready.request
+    straight = float(np.linalg.norm(goal - start))
+    edge = ready.windy.veil.edge_length
+    return LegCost(choice, request.wind, request.vehicle, edge, straight, begin, request.members, request.robust)
+
+
+def spread_of(request: Request, points: FloatArray, begin: float = 0.0) -> Spread | None:
+    """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble."""
     if not request.members:
-        return flight, None
-    times = [fly_legs(points, member, request.vehicle, begin)[1][-1] - begin for member in request.members]
-    return flight, Spread(tuple(float(one) for one in times))
+        return None
+    arrivals = [fly_legs(points, member, request.vehicle, begin)[1][-1] for member in request.members]
+    return Spread(tuple(float(arrival - begin) for arrival in arrivals))
 
 
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
@@ -256,37 +273,44 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _waiting(ready: Ready, found: _Found, begin: float) -> tuple[str, ...]:
+def _waiting(ready: Ready, found: FoundRoute, begin: float) -> tuple[str, ...]:
     """A note where leaving later would arrive earlier: some way was closed by the wind and opens later.
 
     Where every way stays open nobody who leaves later arrives earlier, and nothing is tried.
     """
-    lasting = found.clock - begin
+    lasting = found.arrival - begin
     if not found.deferred:
         return ()
-    best, leave = lasting, 0.0
-    for share in _WAITS:
-        try:
-            later = _find_route_time(ready, begin + share * lasting)
-        except (NoRouteError, WindError):
-            continue
-        if share * lasting + later < best:
-            best, leave = share * lasting + later, share * lasting
-    if lasting - best < _WORTH_WAITING * lasting:
+    waits = [share * lasting for share in _WAITS]
+    arrivals = [wait + _lasting(ready, begin + wait) for wait in waits]
+    least = int(np.argmin(arrivals))
+    if lasting - arrivals[least] < _WORTH_WAITING * lasting:
         return ()
     return (
-        f"waiting pays: leaving {leave / 60:.0f} min later arrives {(lasting - best) / 60:.0f} min earlier, since the"
-        " wind closes the best way until then.",
+        f"waiting pays: leaving {waits[least] / 60:.0f} min later arrives {(lasting - arrivals[least]) / 60:.0f} min"
+        " earlier, since the wind closes the best way until then.",
     )
 
 
-def _find_route_time(ready: Ready, begin: float) -> float:
-    """How long the graph's quickest path takes that begins at `begin` [s]."""
-    request, clock_ = ready.request, begin
-    for start, goal in pairwise(ready.sites):
-        cost = LegCost(
-            CostChoice("time"), request.wind, request.vehicle, ready.windy.veil.edge_length,
-            float(np.linalg.norm(goal - start)), clock_, request.members, request.robust,
-        )  # fmt: skip
-        clock_ += find_path(ready.windy, cost, start, goal, clock_).cost
-    return clock_ - begin
+def _opens(ready: Ready, begin: float) -> str:
+    """When a route exists if none does now, as far as the forecast reaches, in words; nothing if that is never."""
+    ends = ready.windy.ends
+    if not np.isfinite(ends):
+        return ""
+    step = max(_TRIED_EVERY, (ends - begin) / _MOST_TRIED)
+    waits = np.arange(step, ends - begin, step)
+    wait = next((float(wait) for wait in waits if np.isfinite(_lasting(ready, begin + float(wait)))), None)
+    return "" if wait is None else f" It can be flown when leaving {wait / 60:.0f} min later."
+
+
+def _lasting(ready: Ready, begin: float) -> float:
+    """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
+    try:
+        return find_route(ready, CostChoice("time"), begin, _unshaped).arrival - begin
+    except (NoRouteError, WindError):
+        return float("inf")
+
+
+def _unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
+    """The graph's path as it is."""
+    return points

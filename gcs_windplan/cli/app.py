@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from gcs_windplan.cli import clear, compare, diff, linking, plan, pull, push, reproduce, schema, vehicle
+from gcs_windplan.cli import clear, compare, departures, diff, linking, plan, pull, push, reproduce, schema, vehicle
 from gcs_windplan.errors import WindplanError
 
 _EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
@@ -32,6 +32,7 @@ app.command("diff", help=diff.HELP, epilog=diff.EPILOG)(diff.diff)
 app.command("clear", help=clear.HELP, epilog=linking.EPILOG)(clear.clear)
 app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
 app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
+app.command("departures", help=departures.HELP, epilog=_EPILOG)(departures.departures)
 app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
 

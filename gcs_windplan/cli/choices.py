@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
@@ -20,8 +21,10 @@ Folder: TypeAlias = Annotated[
 ]
 
 
-def read_request(mission: Path, airspeed: str | None) -> Request:
-    """The request of a mission file, with the command line's airspeed."""
+def read_request(
+    mission: Path, airspeed: str | None, departure: datetime | None = None, lasting: float | None = None
+) -> Request:
+    """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in the library."""
     from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.spec import read_mission
     from gcs_windplan.spec.values import AIRSPEED
@@ -32,7 +35,7 @@ def read_request(mission: Path, airspeed: str | None) -> Request:
             speed = AIRSPEED.read(airspeed)
         except ValueError as error:
             raise InputError(Problem(str(error), "--airspeed")) from None
-    request = read_mission(mission)
+    request = read_mission(mission, departure) if lasting is None else read_mission(mission, departure, lasting)
     if speed is None:
         return request
     return replace(request, vehicle=replace(request.vehicle, airspeed=speed))

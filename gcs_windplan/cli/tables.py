@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 _WIDTH = 100  # where the output is no terminal
 
 
-def _console() -> Console:
+def make_console() -> Console:
+    """The terminal, or 100 columns where there is none."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
 
@@ -34,7 +35,7 @@ def print_legs(plan: Plan) -> None:
             f"{leg.climb:+.0f}", f"{target.altitude:.1f}", f"{leg.ground_speed:.1f}", f"{leg.wind_along:+.1f}",
             f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f} - {leg.height:.0f}",
         )  # fmt: skip
-    console = _console()
+    console = make_console()
     console.print(table)
     for line in summary_lines(plan):
         console.print(line, soft_wrap=True, markup=False)
@@ -46,13 +47,34 @@ def summary_lines(plan: Plan) -> list[str]:
     """The totals of a plan, in words."""
     totals, effort = plan.totals, plan.effort
     return [
-        f"{plan.request.name}, least {plan.choice}: {len(plan.waypoints)} waypoints, {totals.length / 1000:.2f} km,"
-        f" {clock(totals.seconds)} min en route, {_ends(plan)}",
+        *_head(plan),
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
         f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
         f" {effort.search_seconds:.2f} s, {effort.vertices} vertices shaped in {effort.shaping_seconds:.2f} s",
     ]
+
+
+def _head(plan: Plan) -> list[str]:
+    """What the route is, and how long it takes; over an ensemble in its members, too."""
+    totals = plan.totals
+    lines = [
+        f"{plan.request.name}, least {plan.choice}: {len(plan.waypoints)} waypoints, {totals.length / 1000:.2f} km,"
+        f" {clock(totals.seconds)} min en route, {_ends(plan)}"
+    ]
+    if plan.spread is not None:
+        low, median, high = (spread_clock(plan.spread.at(quantile)) for quantile in (0.1, 0.5, 0.9))
+        stopped = f"; {plan.spread.unflyable} of them cannot fly it" if plan.spread.unflyable else ""
+        lines.append(
+            f"in the {len(plan.spread.seconds)} members, planned for {100 * plan.request.robust:g} %: median {median} min,"
+            f" 10 - 90 % {low} - {high} min{stopped}; the legs above are in their mean"
+        )
+    return lines
+
+
+def spread_clock(seconds: float) -> str:
+    """A member's time, which may be infinite."""
+    return clock(seconds) if seconds < float("inf") else "never"
 
 
 def _ends(plan: Plan) -> str:
@@ -80,7 +102,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
             f"{totals.length / 1000:.2f}", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
             f"{totals.clearance:.0f} - {totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
         )  # fmt: skip
-    console = _console()
+    console = make_console()
     console.print(table)
     hybrid = next((plan.choice for plan in plans if plan.choice.name == "hybrid"), None)
     if hybrid is not None:

@@ -17,7 +17,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost.sampling import CloserWind, clocked, integrate, performance_of, still_air_times
+from gcs_windplan.cost.sampling import LegIntegrals, clocked, integrate_each, performance_of, still_air_times
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import edges as kernel
 from gcs_windplan.kernels.triangle import Performance, mean_angles
@@ -60,7 +60,8 @@ class LegCost:
 
     `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m];
     `begin` is when the start is left [s since departure]. With `members` of an ensemble a leg costs what it costs in
-    the member at the `quantile` from the cheapest up; `wind` is then their mean.
+    the member at the `quantile` from the cheapest up; `wind` is then their mean. Along a leg
+    the wind is looked at `finer` times as closely as its resolution asks for.
     """
 
     choice: CostChoice
@@ -71,6 +72,7 @@ class LegCost:
     begin: float = 0.0
     members: tuple[WindField, ...] = ()
     quantile: float = 0.5
+    finer: float = 1.0
 
     def of_legs(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None) -> FloatArray:
         """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown.
@@ -105,23 +107,21 @@ class LegCost:
         """What the kernels note down for each member; None where there are none."""
         return np.empty((2, len(self.members))) if self.members else None
 
-    def _measured(
-        self, starts: FloatArray, ends: FloatArray, when: FloatArray | None
-    ) -> tuple[FloatArray, FloatArray]:
+    def _measured(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Cost and seconds of legs, (n,) each."""
-        if not self.members:
-            return self._measured_in(self.wind, starts, ends, when)
-        each = [self._measured_in(member, starts, ends, when) for member in self.members]
-        costs, seconds = (np.stack(part) for part in zip(*each, strict=True))
+        winds = self.members or (self.wind,)
+        parts = integrate_each(winds, self.vehicle, starts, ends, when, self.finer)
+        each = [self._price(part, starts, ends) for part in parts]
+        if len(each) == 1:
+            return each[0], parts[0].seconds
+        costs, seconds = np.stack(each), np.stack([part.seconds for part in parts])
         chosen = np.argsort(costs, axis=0, kind="stable")[self.rank : self.rank + 1]
         return np.take_along_axis(costs, chosen, 0)[0], np.take_along_axis(seconds, chosen, 0)[0]
 
-    def _measured_in(
-        self, wind: WindField, starts: FloatArray, ends: FloatArray, when: FloatArray | None
-    ) -> tuple[FloatArray, FloatArray]:
-        parts = integrate(wind, self.vehicle, starts, ends, when)
+    def _price(self, parts: LegIntegrals, starts: FloatArray, ends: FloatArray) -> FloatArray:
+        """What the chosen cost makes of legs (n,)."""
         if self.choice.name == "time":
-            return parts.seconds, parts.seconds
+            return parts.seconds
         lengths = np.linalg.norm(ends - starts, axis=1)
         angle = parts.angle / self.edge_length
         match self.choice.name:
@@ -131,12 +131,11 @@ class LegCost:
                 cost = angle
             case "hybrid":
                 cost = self.choice.angle * angle / math.pi + self.choice.distance * lengths / self.straight
-        return np.where(np.isfinite(parts.seconds), cost, np.inf), parts.seconds
+        return np.where(np.isfinite(parts.seconds), cost, np.inf)
 
     def closer(self, times: float) -> LegCost:
         """The same cost, but the wind along a leg is looked at so many times more closely."""
-        members = tuple(CloserWind(member, times) for member in self.members)
-        return replace(self, wind=CloserWind(self.wind, times), members=members)
+        return replace(self, finer=self.finer * times)
 
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (..., 3), at all times, in all members."""

@@ -8,7 +8,7 @@ there: each vertex would sit in a dent of the quadrature's own making.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -17,6 +17,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, Performance, integrate_legs
 from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.wind.each import at_each
 from gcs_windplan.wind.field import WindField
 
 _Result = TypeVar("_Result")
@@ -42,33 +43,6 @@ class LegIntegrals:
     across: FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class CloserWind:
-    """A wind that asks to be sampled so many times more closely than it says itself."""
-
-    wind: WindField
-    finer: float
-
-    @property
-    def name(self) -> str:
-        """The wind's own."""
-        return self.wind.name
-
-    @property
-    def resolution(self) -> float:
-        """Half of the spacing at which it is looked at [m]."""
-        return self.wind.resolution / self.finer
-
-    @property
-    def times(self) -> FloatArray:
-        """The wind's own."""
-        return self.wind.times
-
-    def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
-        """The wind (n, 3) [m/s] at points (n, 3)."""
-        return self.wind.at(points, seconds)
-
-
 def performance_of(vehicle: Vehicle) -> Performance:
     """The vehicle as the kernels take it."""
     model = PAPER if vehicle.speed_model == "paper" else TRIANGLE
@@ -85,26 +59,45 @@ def integrate(
     the leg. Without it the wind is taken as at the departure. A leg that lasts beyond the last time of a changing wind
     cannot be flown.
     """
+    return integrate_each((wind,), vehicle, starts, ends, when)[0]
+
+
+def integrate_each(
+    winds: Sequence[WindField],
+    vehicle: Vehicle,
+    starts: FloatArray,
+    ends: FloatArray,
+    when: FloatArray | None = None,
+    finer: float = 1.0,
+) -> list[LegIntegrals]:
+    """The same in each of several winds, the members of an ensemble, with samples `finer` times as close."""
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
-    panels = np.clip(np.ceil(lengths / (2 * wind.resolution)), 1, _MOST_PANELS).astype(np.int64)  # two samples each
-    last = float(wind.times[-1]) if len(wind.times) > 1 else np.inf
+    apart = 2 * min(wind.resolution for wind in winds) / finer
+    panels = np.clip(np.ceil(lengths / apart), 1, _MOST_PANELS).astype(np.int64)  # two samples each
+    last = min((float(wind.times[-1]) for wind in winds if len(wind.times) > 1), default=np.inf)
+    known = np.minimum(when, last) if when is not None else None  # what lasts longer is refused below
 
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
         points = starts[leg] + share[:, None] * vectors[leg]
-        if when is None:
-            return wind.at(points)
-        return wind.at(points, np.minimum(when[leg, 0] + share * (when[leg, 1] - when[leg, 0]), last))
+        if known is None:
+            return at_each(winds, points)
+        return at_each(winds, points, known[leg, 0] + share * (known[leg, 1] - known[leg, 0]))
 
-    leg, widths, winds = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
+    leg, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
     first = np.zeros(len(vectors) + 1, dtype=np.int64)
     np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
     weights = (widths[:, None] * _SIMPSON).ravel()
-    table = integrate_legs(performance_of(vehicle), vectors, first, weights, winds.reshape(-1, 3))
-    seconds = table[:, 0]
-    if when is not None:
-        seconds = np.where(when[:, 0] + seconds <= last, seconds, np.inf)
-    return LegIntegrals(seconds, table[:, 1], table[:, 2], table[:, 3])
+    performance = performance_of(vehicle)
+    results = []
+    for member in range(len(winds)):
+        blows = np.ascontiguousarray(sampled[:, :, 3 * member : 3 * member + 3]).reshape(-1, 3)
+        table = integrate_legs(performance, vectors, first, weights, blows)
+        seconds = table[:, 0]
+        if when is not None:
+            seconds = np.where(when[:, 0] + seconds <= last, seconds, np.inf)
+        results.append(LegIntegrals(seconds, table[:, 1], table[:, 2], table[:, 3]))
+    return results
 
 
 def clocked(
@@ -134,8 +127,8 @@ def still_air_times(points: FloatArray, vehicle: Vehicle, begin: float) -> Float
 def _first_panels(
     panels: IntArray, wind_at: Callable[[IntArray, FloatArray], FloatArray]
 ) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Equal panels on each leg: their leg, begin and width as shares of it (k,), winds at both ends and middle (k, 3,
-    3)."""
+    """Equal panels on each leg: their leg, begin and width as shares of it (k,), winds at both ends and in the middle
+    (k, 3, 3), or (k, 3, 3 m) for m members."""
     knots = 2 * panels + 1
     first = np.cumsum(knots) - knots
     leg = np.repeat(np.arange(len(panels)), knots)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ def format_summary(plan: Plan) -> str:
         "limits": {"clearance": request.clearance, "max_height": request.max_height},
         "finish": request.finish,
         "totals": asdict(plan.totals),
+        "ensemble": _ensemble(plan),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
         "notes": list(plan.notes),
@@ -38,6 +40,19 @@ def format_summary(plan: Plan) -> str:
         },
     }
     return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _ensemble(plan: Plan) -> dict[str, Any] | None:
+    """How long the route takes over the members [s]; null where one cannot fly it. None where there is no ensemble."""
+    if plan.spread is None:
+        return None
+    known = [seconds if math.isfinite(seconds) else None for seconds in plan.spread.seconds]
+    quantiles = {f"{100 * q:g} %": plan.spread.at(q) for q in (0.1, 0.5, 0.9)}
+    return {
+        "robust": plan.request.robust,
+        "member_seconds": known,
+        "quantiles": {name: seconds if math.isfinite(seconds) else None for name, seconds in quantiles.items()},
+    }
 
 
 def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:

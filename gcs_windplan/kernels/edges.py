@@ -15,7 +15,7 @@ Numba compiles only the branch that the winds' dimensions ask for.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -227,8 +227,8 @@ def edge_of_members(
 
 @numba.njit(error_model="numpy", forceinline=True)
 def travel(
-    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
-    each: FloatArray | None, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+    each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
     level: float, east: float, north: float, climb: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Cost and seconds of an edge between two nodes in whichever world; no seconds are told in a steady one."""
@@ -253,8 +253,8 @@ def travel(
 
 @numba.njit(error_model="numpy", forceinline=True)
 def travel_between(
-    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
-    each: FloatArray | None, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+    each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
     de: float, dn: float, dz: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
     """`travel` along an edge given by its vector (de, dn, dz) [m]."""
@@ -270,8 +270,8 @@ def travel_between(
 
 @numba.njit(cache=True, error_model="numpy")
 def joins(
-    performance: Performance, setting: Setting, times: FloatArray | None, tally: IntArray, rank: int,
-    each: FloatArray | None, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,
+    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+    each: Any, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,
     clock: float,
 ) -> FloatArray:  # fmt: skip
     """Cost and seconds (n, 2) of the edges from a site to some nodes, along vectors (n, 3) [m]."""

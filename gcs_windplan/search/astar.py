@@ -46,9 +46,7 @@ class GraphPath:
     deferred: int = 0
 
 
-def find_path(
-    windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
-) -> GraphPath:
+def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0) -> GraphPath:
     """The path from start to goal, (3,) each, that begins at `clock` [s since departure].
 
     Raises `NoRouteError` that says what cuts the goal off.

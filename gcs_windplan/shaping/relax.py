@@ -48,10 +48,12 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
     given = cost.of_polyline(points)
     if not np.isfinite(given):
         return points
-    best, best_cost = _settle(points, cost, clearance)
+    best, best_cost = settle(points, cost, clearance)
+    if not best_cost <= given:  # in changing wind moves may come too late
+        best, best_cost = points, given
     finer, patience = best, _PATIENCE
     while 2 * len(finer) - 1 <= _MOST_VERTICES and patience:
-        finer, finer_cost = _settle(_halve(finer), cost, clearance)
+        finer, finer_cost = settle(_halve(finer), cost, clearance)
         patience = patience - 1 if best_cost - finer_cost < _WORTH * best_cost else _PATIENCE
         if finer_cost < best_cost:
             best, best_cost = finer, finer_cost
@@ -61,9 +63,10 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
         thinned = thin(best, cost, clearance, limit)
         if len(thinned) == len(best):
             break
-        best, _ = _settle(
-            thinned, cost, clearance, _TOUCH
-        )  # the fewer that are left find better places, and free others
+        settled, price = settle(thinned, cost, clearance, _TOUCH)  # those left find better places, and free others
+        if not price <= given:
+            break
+        best = settled
     return best if cost.of_polyline(best) <= given else points
 
 
@@ -100,7 +103,7 @@ def _halve(points: FloatArray) -> FloatArray:
     return finer
 
 
-def _settle(
+def settle(
     points: FloatArray, cost: LegCost, clearance: Clearance, first_step: float = _FIRST_STEP
 ) -> tuple[FloatArray, float]:
     """Move the inner vertices until none gains any more; the polyline and its cost."""

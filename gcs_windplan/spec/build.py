@@ -88,6 +88,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         fence_return=None if model.fence.return_point is None else beside[-1],
         rally=tuple(beside[: len(model.rally)]),
         members=winds.members,
+        gusts=winds.gusts,
         robust=0.5 if model.robust is None else model.robust,
         locate=_locator(document),
     )

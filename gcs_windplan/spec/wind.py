@@ -29,10 +29,11 @@ class Departure:
 
 @dataclass(frozen=True, slots=True)
 class Winds:
-    """The wind to plan in, and those of an ensemble's members, of which it is the mean."""
+    """The wind to plan in, those of an ensemble's members, of which it is the mean, and the gusts of each."""
 
     wind: WindField
     members: tuple[WindField, ...] = ()
+    gusts: tuple[WindField, ...] = ()
 
 
 def build_wind(
@@ -74,7 +75,7 @@ def _forecast(
         ground_resolution=terrain.resolution,
     )
     forecast = air.read_forecast([document.beside(name) for name in model.forecast], wanted)
-    return Winds(forecast.mean, forecast.fields if len(forecast.fields) > 1 else ())
+    return Winds(forecast.mean, forecast.fields if len(forecast.fields) > 1 else (), forecast.gusts)
 
 
 def _papers(model: PaperWindModel) -> WindField:

@@ -38,8 +38,8 @@ class Variable:
     def told(self, attribute: str) -> str:
         """A text attribute as it stands, empty where there is none."""
         value = self.attributes.get(attribute, "")
-        if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes) and len(value) == 1:
-            value = value[0]
+        if isinstance(value, list | tuple | np.ndarray) and np.size(value) == 1:
+            value = np.ravel(np.asarray(value, dtype=object))[0]
         if isinstance(value, bytes):
             value = value.decode("latin-1")
         return value.strip() if isinstance(value, str) else ""

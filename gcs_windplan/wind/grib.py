@@ -29,6 +29,7 @@ from gcs_windplan.wind.sheets import Catalogue, Grid, Level, LevelKind, Quantity
 
 _CHUNK = 8192  # [bytes] that are searched at a time for the next message
 _KEPT = 4  # decoded fields
+_MOST = 200_000_000  # nodes of a grid: more than any forecast has, fewer than memory holds
 _NOTHING = -1e100  # what a missing value decodes to
 _TIMELESS = "without a time that can be read: not used"
 
@@ -291,6 +292,9 @@ class _Reader:
         if field not in self.decoded:
             self.offset = field[0].offset
             with _handle_of(self.file, field) as handle:
+                nodes = layout.shape[0] * layout.shape[1]
+                if eccodes.codes_get_size(handle, "values") != nodes or _number(handle, "numberOfCodedValues") > nodes:
+                    raise WindError(f"its message at byte {self.offset} is not as long as its grid: download it again")
                 eccodes.codes_set(handle, "missingValue", _NOTHING)
                 values: FloatArray = eccodes.codes_get_values(handle)
             if len(self.decoded) == _KEPT:
@@ -343,14 +347,20 @@ def _length(file: BinaryIO, start: int) -> int:
         return 16
     if head[7] != 1:
         return int.from_bytes(head[8:16]) if head[7] == 2 else 0
-    length = int.from_bytes(head[4:7])
-    if length < 1 << 23:
+    length, rest = int.from_bytes(head[4:7]), _sections_1(file, start)[-1].length
+    if length < 1 << 23 or rest >= 120:
         return length
-    position = start + 8  # beyond 8 MB ECMWF counts in units of 120 bytes
-    for there in (True, head[15] & 128, head[15] & 64):
-        position += int.from_bytes(_read(file, _Span(position, 3))) if there else 0
-    rest = int.from_bytes(_read(file, _Span(position, 3)))
-    return length if rest >= 120 else (length - (1 << 23)) * 120 - rest + 4
+    return (length - (1 << 23)) * 120 - rest + 4  # beyond 16 MB ECMWF counts in units of 120 bytes
+
+
+def _sections_1(file: BinaryIO, start: int) -> list[_Span]:
+    """Sections 1 to 4 of a message of edition 1, without those that it has not."""
+    flags, position, sections = _read(file, _Span(start + 15, 1))[0], start + 8, []
+    for there in (True, flags & 128, flags & 64, True):
+        if there:
+            sections.append(_Span(position, int.from_bytes(_read(file, _Span(position, 3)))))
+            position += sections[-1].length
+    return sections
 
 
 def _fields(file: BinaryIO, message: _Span) -> Iterator[_Field]:
@@ -358,7 +368,11 @@ def _fields(file: BinaryIO, message: _Span) -> Iterator[_Field]:
 
     After its data (section 7) a message of edition 2 may go on with any of sections 2 to 7; those not repeated hold on.
     """
+    damaged = WindError(f"the sections of its message at byte {message.offset} do not fit: download it again")
     if _read(file, _Span(message.offset, 8))[7] == 1:
+        last = _sections_1(file, message.offset)[-1]
+        if last.offset + last.length != message.offset + message.length - 4 and message.length < 1 << 23:
+            raise damaged
         yield (message,)
         return
     sections = {0: _Span(message.offset, 16)}
@@ -368,7 +382,7 @@ def _fields(file: BinaryIO, message: _Span) -> Iterator[_Field]:
         span, number = _Span(position, int.from_bytes(head[:4])), head[4]
         position += span.length
         if span.length < 5 or not 1 <= number <= 7 or position > end:
-            raise WindError(f"the sections of its message at byte {message.offset} do not fit: download it again")
+            raise damaged
         if number == 6 and head[5] == 254:  # the bitmap told before
             span = bitmap
         elif number == 6:
@@ -381,16 +395,16 @@ def _fields(file: BinaryIO, message: _Span) -> Iterator[_Field]:
 def _header(file: BinaryIO, field: _Field) -> _Header:
     """What the first sections of a field say. Raises `WindError`."""
     if len(field) == 1:
-        return _header_1(file, field[0].offset + 8)
+        return _header_1(file, field[0].offset)
     if len(field) < 7:
         raise WindError(f"its message at byte {field[0].offset} lacks a section: download it again")
     return _header_2([_read(file, span) for span in field[:-3]])
 
 
 def _header_1(file: BinaryIO, start: int) -> _Header:
-    one = _read(file, _Span(start, int.from_bytes(_read(file, _Span(start, 3)))))
-    start += len(one)
-    two = _read(file, _Span(start, int.from_bytes(_read(file, _Span(start, 3))))) if one[7] & 128 else b""
+    spans = _sections_1(file, start)
+    one = _read(file, spans[0])
+    two = _read(file, spans[1]) if one[7] & 128 else b""
     shared = one[:12] + one[17:18] + one[20:24] + one[25:] + two
     run = _moment(100 * (one[24] - 1) + one[12], *one[13:17])
     first, second, span = one[18:21]
@@ -566,6 +580,8 @@ def _layout(handle: int) -> _Layout:
         raise _Unused("on a staggered grid: not read; ask for a regular grid")
     shape = _number(handle, "Nj"), _number(handle, "Ni")
     name = f"{_GRIDS[kind]} grid, {shape[0]} x {shape[1]}"
+    if not 0 < shape[0] * shape[1] == _number(handle, "numberOfDataPoints") <= _MOST:
+        raise WindError(f"its grid ({name}) is damaged, or too large: download it again, or take a part of it")
     nodes = _lines(handle, shape, scanning) if kind.endswith("_ll") else _nodes(handle, kind, shape, scanning)
     if kind == "rotated_ll":
         nodes = _unrotated(handle, *nodes)

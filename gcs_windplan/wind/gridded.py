@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,8 @@ class GriddedWind:
 
     def __post_init__(self) -> None:
         check_columns(self.columns, self.name)
+        contiguous = Columns(*(np.ascontiguousarray(part, dtype=np.float64) for part in self.columns))
+        object.__setattr__(self, "columns", contiguous)
         rows, columns = len(self.columns.rows), len(self.columns.columns)
         if (rows, columns) != (len(self.placement.rows), len(self.placement.columns)):
             raise WindError(f"the wind's {rows} rows and {columns} columns are not those of its grid ({self.name})")
@@ -70,6 +73,16 @@ class GriddedWind:
         ground = ground_under(self.ground, points)
         return to_grid(self.interpolated(places, z, ground, when), places[:, 2])
 
+    def shares_with(self, other: GriddedWind) -> bool:
+        """Whether places, ground and clock are the other's: two members of one ensemble."""
+        return (
+            self.placement is other.placement
+            and self.ground == other.ground
+            and self.zero == other.zero
+            and self.window == other.window
+            and self.extend == other.extend
+        )
+
     def placed(self, points: FloatArray) -> FloatArray:
         """Row, column and convergence of points (n, 3), shape (n, 3). Raises `WindError` outside of the area."""
         if not np.isfinite(points).all():
@@ -85,9 +98,7 @@ class GriddedWind:
             return interpolate_columns(self.columns, self.law, places, z, ground, when)
         size = -(-len(z) // available_cores())
         parts = [slice(begin, begin + size) for begin in range(0, len(z), size)]
-        work = spread(
-            lambda p: interpolate_columns(self.columns, self.law, places[p], z[p], ground[p], when[p]), parts
-        )
+        work = spread(lambda p: interpolate_columns(self.columns, self.law, places[p], z[p], ground[p], when[p]), parts)
         return np.concatenate(list(work))
 
     def _when(self, seconds: float | FloatArray, count: int) -> FloatArray:
@@ -116,6 +127,17 @@ class GriddedWind:
             f" {self.placement.covers()} ({self.name}); take a larger file, or say `extend: nearest` to take the wind"
             " at its edge"
         )
+
+
+def at_members(members: Sequence[GriddedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+    """The winds (n, 3 m) of members that share places, ground and clock; as their `at` one after the other."""
+    one = members[0]
+    when = one._when(seconds, len(points))
+    places = one.placed(points)
+    z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
+    ground = ground_under(one.ground, points)
+    turned = [to_grid(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
+    return np.concatenate(turned, axis=1)
 
 
 def ground_under(ground: Ground | None, points: FloatArray) -> FloatArray:

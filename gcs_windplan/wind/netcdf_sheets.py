@@ -50,9 +50,14 @@ def open_netcdf(path: Path) -> Iterator[Catalogue]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Source:
-    """A variable, what it holds, and where; `version` is ERA5's dimension `expver`."""
+    """A variable, what it holds, and where.
+
+    `column` is the variable at one node, for which times and levels are asked: there are fields of times, of the
+    strongest gust. `version` is ERA5's dimension `expver`.
+    """
 
     variable: Variable
+    column: Variable
     meaning: Meaning
     quantity: Quantity
     layout: Layout
@@ -114,16 +119,18 @@ class _Reader:
         if 0 in variable.shape:
             raise WindError("it is empty: nothing was written into it")
         layout = self._layouts.of(variable)
-        roles = {d: self._role(variable, d) for d in variable.dimensions if d not in (layout.rows, layout.columns)}
+        free = tuple(d for d in variable.dimensions if d not in (layout.rows, layout.columns))
+        column = replace(variable, dimensions=free, shape=tuple(self._file.dimensions[d] for d in free))
+        roles = {d: self._role(variable, d) for d in free}
         for dimension, counted in roles.items():
             size = self._file.dimensions[dimension]
-            if counted is None and size > 1 and not self._has_time(variable, dimension):
+            if counted is None and size > 1 and not self._has_time(column, dimension):
                 raise WindError(
                     f"an axis {dimension} of {size} values counts nothing that is known: set the `units` (hPa, m) or"
                     " the `standard_name` (air_pressure, height, altitude, realization) of its coordinate"
                 )
         version = next((dimension for dimension, counted in roles.items() if counted == "version"), None)
-        return _Source(variable, found, found.quantity, layout, version)
+        return _Source(variable, column, found, found.quantity, layout, version)
 
     def _role(self, variable: Variable, dimension: str) -> Role | None:
         """What a dimension counts; members and versions need no numbers to be known."""
@@ -140,15 +147,15 @@ class _Reader:
     def _sheets(self, source: _Source) -> list[Sheet]:
         """The sheets of a variable. Raises `WindError` for times and levels that cannot be told."""
         variable, layout = source.variable, source.layout
-        levels = self._axes.levels(variable, source.meaning)
+        levels = self._axes.levels(source.column, source.meaning)
         quantity = _at(levels, source.quantity)
         if quantity is None:
             return []
-        time, run = self._axes.times(variable, source.meaning)
-        members = self._members(variable)
-        along_grid = self._along_grid(source)
+        time, run = self._axes.times(source.column, source.meaning)
+        members = self._members(source.column)
+        along_grid, units = self._along_grid(source), variable.told("units")
         source = replace(source, quantity=quantity)
-        free = [d for d in variable.dimensions if d not in (layout.rows, layout.columns, source.version)]
+        free = [d for d in source.column.dimensions if d != source.version]
         sheets = []
         for numbers in np.ndindex(*(self._file.dimensions[d] for d in free)):
             place = dict(zip(free, numbers, strict=True))
@@ -160,7 +167,7 @@ class _Reader:
                     grid=layout.grid,
                     read=partial(self._read, source, place),
                     name=variable.name,
-                    units=variable.told("units"),
+                    units=units,
                     time=None if time is None else time.at(place),
                     run=None if run is None else run.at(place),
                     member=None if members is None else members[1][place[members[0]]],
@@ -177,7 +184,7 @@ class _Reader:
             if size > 1 and self._role(variable, dimension) == "member":
                 axis = self._axes.along(variable, dimension)
                 values = np.arange(size) if axis is None else self._file.values(axis)
-                known = np.isfinite(values).all() and len(np.unique(values.astype(np.int64))) == size
+                known = bool((np.abs(values) < 2**31).all()) and len(np.unique(values.astype(np.int64))) == size
                 return dimension, [int(value) for value in (values if known else np.arange(size))]
         return None
 

@@ -157,7 +157,10 @@ def _times(values: Any, units: Any, answer: Mapping[str, Any]) -> tuple[float, .
     if not isinstance(values, list) or not values:
         raise WindError("has no times: leave the answer as it was downloaded")
     if units == "unixtime":
-        return tuple(_float(value, "time") for value in values)
+        times = tuple(_float(value, "time") for value in values)
+        if not all(map(math.isfinite, times)):
+            raise WindError("has a time that is none")
+        return times
     if units != "iso8601":
         raise WindError(f"has times in {units!r}, which are neither iso8601 nor unixtime")
     offset = _float(answer.get("utc_offset_seconds"), "utc_offset_seconds")
@@ -167,12 +170,13 @@ def _times(values: Any, units: Any, answer: Mapping[str, Any]) -> tuple[float, .
 
 
 def _moment(value: Any, offset: float) -> float:
+    """UTC seconds since 1970 of a time, a local one where it names no zone."""
     try:
         moment = datetime.fromisoformat(value)
-    except (TypeError, ValueError) as error:
-        raise WindError(f"has a time {value!r} that cannot be read") from error
-    if moment.tzinfo is None:
-        moment = moment.replace(tzinfo=UTC) - timedelta(seconds=offset)
+        if moment.tzinfo is None:
+            moment = moment.replace(tzinfo=UTC) - timedelta(seconds=offset)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise WindError(f"has a time {str(value)[:40]!r} that cannot be read") from error
     return moment.timestamp()
 
 
@@ -236,7 +240,10 @@ def _float(value: Any, name: str) -> float:
         return math.nan
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise WindError(f"has {name} {str(value)[:40]!r}, which is no number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise WindError(f"has {name} beyond all numbers") from error
 
 
 def _lattice(points: list[_Point]) -> tuple[Grid, IntArray]:

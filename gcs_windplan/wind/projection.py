@@ -27,9 +27,6 @@ def unprojected(
 
     Raises `WindError` for mappings and units that are not known, and places that no projection reaches.
     """
-    from rasterio.crs import CRS
-    from rasterio.warp import transform
-
     name = mapping.text("grid_mapping_name")
     if name not in _PROJECTIONS:
         raise WindError(
@@ -40,16 +37,26 @@ def unprojected(
     across, along = (unit_of(axis, unit, measure) for axis, unit in zip(("x", "y"), units, strict=True))
     earth = _earth(mapping)
     origin = "" if measure is ANGLE else _false_origin(mapping, across, along)
-    source = CRS.from_proj4(f"{_PROJECTIONS[name](mapping)} {origin} {earth} +no_defs")
-    target = CRS.from_proj4(f"+proj=longlat {earth} +no_defs")
+    projection = f"{_PROJECTIONS[name](mapping)} {origin} {earth} +no_defs"
+    try:
+        latitudes, longitudes = _transformed(projection, f"+proj=longlat {earth} +no_defs", x * across, y * along)
+    except Exception as error:  # GDAL's own errors, which rasterio lets through, share no public ancestor
+        raise WindError(f"its grid mapping {mapping.name} ({projection}) cannot be worked out: {error}") from error
+    if not np.isfinite(latitudes).all() or not np.isfinite(longitudes).all():
+        raise WindError(f"parts of its grid lie where its grid mapping {mapping.name} ({name}) cannot reach")
+    return latitudes, longitudes
+
+
+def _transformed(source: str, target: str, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    from rasterio.crs import CRS
+    from rasterio.warp import transform
+
     latitudes, longitudes = np.empty((len(y), len(x))), np.empty((len(y), len(x)))
     for first in range(0, len(y), _ROWS):
         rows = slice(first, first + _ROWS)
-        xs, ys = np.meshgrid(x * across, y[rows] * along)
-        east, north = transform(source, target, xs.ravel(), ys.ravel())
+        xs, ys = np.meshgrid(x, y[rows])
+        east, north = transform(CRS.from_proj4(source), CRS.from_proj4(target), xs.ravel(), ys.ravel())
         longitudes[rows], latitudes[rows] = np.reshape(east, xs.shape), np.reshape(north, xs.shape)
-    if not np.isfinite(latitudes).all() or not np.isfinite(longitudes).all():
-        raise WindError(f"parts of its grid lie where its grid mapping {mapping.name} ({name}) cannot reach")
     return latitudes, longitudes
 
 

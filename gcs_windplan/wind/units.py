@@ -95,6 +95,7 @@ OF: Mapping[Quantity, Measure] = {
     "terrain": GEOPOTENTIAL, "roughness": LENGTH, "temperature": TEMPERATURE, "humidity": HUMIDITY,
     "pressure": PRESSURE,
 }  # fmt: skip
+_LOG_OF_ANY_PRESSURE = 12.0  # 1628 hPa
 _SHARES = ("%", "percent", "1", "-", "dimensionless", "probability", "count")
 _MEASURES = (SPEED, LENGTH, PRESSURE, GEOPOTENTIAL, ANGLE, TEMPERATURE, HUMIDITY)
 _SUPERSCRIPTS = str.maketrans("²³⁻¹", "23-1")
@@ -131,8 +132,10 @@ def compact(units: str) -> str:
 
 
 def unlogged(values: FloatArray, name: str, units: str) -> FloatArray:
-    """Pressures [Pa] of their natural logarithms, which have no unit. Raises `WindError` if they are said to have."""
+    """Pressures [Pa] of their natural logarithms, which have no unit. Raises `WindError` if they cannot be those."""
     if compact(units) not in {"", "~", "1", "-", "numeric", "dimensionless", "none", "lnpa", "logpa"}:
         raise WindError(f"{name} is in {units!r}, but the logarithm of a pressure has no unit: set `units` to 1")
+    if (values > _LOG_OF_ANY_PRESSURE).any():
+        raise WindError(f"{name} goes up to {np.nanmax(values):g}, which is the logarithm of no pressure")
     pressures: FloatArray = np.exp(values)
     return pressures

@@ -8,19 +8,19 @@ height:
 
 - a flow from the west-south-west, 7 m/s at 80 m above the ground, growing with height by a power law;
 - speed-up over ridges and shelter in valleys, in proportion to how high the ground stands above its
-surroundings,
-  strongest near the ground (Jackson and Hunt 1975: the speed-up over a low hill is about twice its height
-  over its half-length, and fades with height over that length);
+  surroundings, strongest near the ground (Jackson and Hunt 1975: the speed-up over a low hill is about twice
+  its height over its half-length, and fades with height over that length);
 - channelling: in a valley the flow near the ground turns along the valley's axis;
 - a veer to the right with height, as friction leaves it in the northern hemisphere.
 
 The terrain: Jacksboro fault, Tennessee, USGS, public domain, 3 arc seconds, as in matplotlib's sample data.
-The same input gives the same file, byte for byte.
+The same input gives the same file, byte for byte. `synthetic_front.py` takes its terrain and its profile from here.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import netCDF4
 import numpy as np
@@ -54,22 +54,43 @@ def main() -> None:
     print(f"{FILE.name}: {FILE.stat().st_size} bytes")
 
 
+class Land(NamedTuple):
+    """What of the terrain the wind feels: see `relief`."""
+
+    stand: FloatArray
+    axis: FloatArray
+    valley: FloatArray
+
+
 def synthesize() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Latitudes (ny,) and longitudes (nx,) [deg], u and v (levels, ny, nx) [m/s] towards east and north."""
-    heights, south, north, west, east = terrain()
-    latitudes = _axis(south, north)
-    longitudes = _axis(west, east)
-    stand, axis, valley = relief(heights)
-
-    def at_grid(field: FloatArray) -> FloatArray:
-        """A field on the terrain's cells, at the wind's nodes; beyond the terrain its edge goes on."""
-        rows = (latitudes - south) / (north - south) * (heights.shape[0] - 1)
-        columns = (longitudes - west) / (east - west) * (heights.shape[1] - 1)
-        return map_coordinates(field, np.meshgrid(rows, columns, indexing="ij"), order=1, mode="nearest")
-
-    cos2, sin2 = at_grid(np.cos(2 * axis)), at_grid(np.sin(2 * axis))
-    parts = [_level(z, at_grid(stand), np.arctan2(sin2, cos2) / 2, at_grid(valley)) for z in LEVELS]
+    latitudes, longitudes = nodes(SPACING, MARGIN)
+    land = land_at(latitudes, longitudes, GRAIN, SURROUNDINGS)
+    parts = [flow(z, SPEED, FROM_DEG, land) for z in LEVELS]
     return latitudes, longitudes, np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
+
+
+def nodes(spacing: float, margin: float) -> tuple[FloatArray, FloatArray]:
+    """Latitudes and longitudes on whole multiples of the spacing, at least the margin around the terrain [deg]."""
+    _, south, north, west, east = terrain()
+
+    def between(low: float, high: float) -> FloatArray:
+        first, last = np.floor((low - margin) / spacing), np.ceil((high + margin) / spacing)
+        return np.round(np.arange(first, last + 1) * spacing, 6)
+
+    return between(south, north), between(west, east)
+
+
+def land_at(latitudes: FloatArray, longitudes: FloatArray, grain: float, surroundings: float) -> Land:
+    """The relief at the wind's nodes (ny, nx); beyond the terrain its edge goes on. `grain` as in `relief`."""
+    heights, south, north, west, east = terrain()
+    rows = (latitudes - south) / (north - south) * (heights.shape[0] - 1)
+    columns = (longitudes - west) / (east - west) * (heights.shape[1] - 1)
+    places = np.meshgrid(rows, columns, indexing="ij")
+    stand, axis, valley = relief(heights, grain, surroundings)
+    fields = (stand, np.cos(2 * axis), np.sin(2 * axis), valley)
+    stand, cos2, sin2, valley = (map_coordinates(field, places, order=1, mode="nearest") for field in fields)
+    return Land(stand, np.arctan2(sin2, cos2) / 2, valley)
 
 
 def terrain() -> tuple[FloatArray, float, float, float, float]:
@@ -82,28 +103,30 @@ def terrain() -> tuple[FloatArray, float, float, float, float]:
     return heights, edge_south + half_y, edge_north - half_y, edge_west + half_x, edge_east - half_x
 
 
-def relief(heights: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What of the terrain the wind feels, on its cells.
+def relief(heights: FloatArray, grain: float, surroundings: float) -> Land:
+    """What of the terrain the wind feels, on its cells, smoothed by so many of them; so many make the surroundings.
 
     How the ground stands above its surroundings, -1 to 1; the direction of the valleys' axis [rad from east];
     how much of a valley it is, 0 to 1.
     """
-    smooth = gaussian_filter(heights, GRAIN, mode="nearest")
-    anomaly = smooth - gaussian_filter(heights, SURROUNDINGS, mode="nearest")
+    smooth = gaussian_filter(heights, grain, mode="nearest")
+    anomaly = smooth - gaussian_filter(heights, surroundings, mode="nearest")
     stand = np.tanh(anomaly / (1.5 * anomaly.std()))
     slope_y, slope_x = np.gradient(smooth)  # the axis lies across the direction in which heights change most
-    xx, yy, xy = (gaussian_filter(p, GRAIN) for p in (slope_x**2, slope_y**2, slope_x * slope_y))
+    xx, yy, xy = (gaussian_filter(p, grain) for p in (slope_x**2, slope_y**2, slope_x * slope_y))
     axis = 0.5 * np.arctan2(2 * xy, xx - yy) + np.pi / 2
-    return stand, axis, np.clip(-stand, 0, 1)
+    return Land(stand, axis, np.clip(-stand, 0, 1))
 
 
-def _level(z: float, stand: FloatArray, axis: FloatArray, valley: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """u and v [m/s] at one height above the ground."""
+def flow(
+    z: float, speed: FloatArray | float, from_deg: FloatArray | float, land: Land
+) -> tuple[FloatArray, FloatArray]:
+    """u and v [m/s] at one height above the ground, of a flow that is told as at 80 m above flat ground."""
     grip = np.exp(-z / FADING)
-    speed = SPEED * (z / REFERENCE) ** SHEAR * (1 + 0.6 * grip * stand)
-    towards = np.radians(270.0 - FROM_DEG - VEER_PER_METRE * (min(z, 200.0) - REFERENCE))  # from east, anticlockwise
-    off = (axis - towards + np.pi / 2) % np.pi - np.pi / 2  # the valley's nearer end, at most a right angle away
-    turned = towards + grip * valley * off * np.cos(off)  # across a valley the flow does not choose an end
+    speed = speed * (z / REFERENCE) ** SHEAR * (1 + 0.6 * grip * land.stand)
+    towards = np.radians(270.0 - from_deg - VEER_PER_METRE * (min(z, 200.0) - REFERENCE))  # from east, anticlockwise
+    off = (land.axis - towards + np.pi / 2) % np.pi - np.pi / 2  # the valley's nearer end, at most a right angle away
+    turned = towards + grip * land.valley * off * np.cos(off)  # across a valley the flow does not choose an end
     return speed * np.cos(turned), speed * np.sin(turned)
 
 
@@ -113,31 +136,35 @@ def write(path: Path, latitudes: FloatArray, longitudes: FloatArray, u: FloatArr
         file.Conventions = "CF-1.11"
         file.title = "synthetic wind made by gcs_windplan, not a forecast"
         file.source = "missions/wind/synthetic_jacksboro.py over the Jacksboro DEM (USGS, public domain)"
-        _coordinate(file, "time", np.zeros(1), "hours since 2026-05-01 12:00:00", "time")
-        file["time"].calendar = "standard"
-        _coordinate(file, "height", LEVELS, "m", "height")
-        file["height"].positive = "up"
-        file["height"].long_name = "height above ground"
-        _coordinate(file, "latitude", latitudes, "degrees_north", "latitude")
-        _coordinate(file, "longitude", longitudes, "degrees_east", "longitude")
+        grid(file, np.zeros(1), "hours since 2026-05-01 12:00:00", latitudes, longitudes)
         for name, values, standard in (("u", u, "eastward_wind"), ("v", v, "northward_wind")):
-            dimensions = ("time", "height", "latitude", "longitude")
-            variable = file.createVariable(name, "i2", dimensions, compression="zlib", complevel=9, shuffle=True)
-            variable.standard_name, variable.units, variable.scale_factor = standard, "m s-1", 0.01
-            variable[:] = values[np.newaxis]
+            wind(file, name, ("time", "height", "latitude", "longitude"), values[np.newaxis], standard)
 
 
-def _coordinate(file: netCDF4.Dataset, name: str, values: FloatArray, units: str, standard_name: str) -> None:
+def grid(file: netCDF4.Dataset, times: FloatArray, since: str, latitudes: FloatArray, longitudes: FloatArray) -> None:
+    """The coordinates of time, height, latitude and longitude."""
+    coordinate(file, "time", times, since, "time")
+    file["time"].calendar = "standard"
+    coordinate(file, "height", LEVELS, "m", "height")
+    file["height"].positive = "up"
+    file["height"].long_name = "height above ground"
+    coordinate(file, "latitude", latitudes, "degrees_north", "latitude")
+    coordinate(file, "longitude", longitudes, "degrees_east", "longitude")
+
+
+def coordinate(file: netCDF4.Dataset, name: str, values: FloatArray, units: str, standard_name: str) -> None:
+    """A dimension and its coordinate."""
     file.createDimension(name, len(values))
     variable = file.createVariable(name, "f8", (name,))
     variable.standard_name, variable.units = standard_name, units
     variable[:] = values
 
 
-def _axis(low: float, high: float) -> FloatArray:
-    """Nodes on whole multiples of the spacing, at least the margin beyond both ends."""
-    first, last = np.floor((low - MARGIN) / SPACING), np.ceil((high + MARGIN) / SPACING)
-    return np.round(np.arange(first, last + 1) * SPACING, 6)
+def wind(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], values: FloatArray, standard_name: str) -> None:
+    """A variable in m/s, packed in two bytes a value."""
+    variable = file.createVariable(name, "i2", dimensions, compression="zlib", complevel=9, shuffle=True)
+    variable.standard_name, variable.units, variable.scale_factor = standard_name, "m s-1", 0.01
+    variable[:] = values
 
 
 if __name__ == "__main__":

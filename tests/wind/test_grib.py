@@ -336,7 +336,11 @@ def test_steps_of_edition_1_beyond_255_hours(opened: Opened) -> None:
 
 
 def test_an_analysis_of_edition_1_is_of_its_own_time(opened: Opened) -> None:
-    assert _only(opened(message("u", edition=1, timeRangeIndicator=1, P1=6))).time == NOON
+    assert _only(opened(message("u", edition=1, timeRangeIndicator=1, P1=6, P2=3))).time == NOON
+
+
+def test_steps_may_go_back(opened: Opened) -> None:
+    assert _only(opened(message("u", forecastTime=-3))).time == NOON - 3 * 3600
 
 
 def test_months_are_counted_and_not_used(opened: Opened) -> None:
@@ -453,6 +457,12 @@ def test_every_scanning_mode_gives_the_same_wind_at_the_same_place(opened: Opene
     np.testing.assert_allclose(_whole(sheet), _slope(*_places(sheet)), atol=ONE_CM_PER_SECOND)
 
 
+def test_flags_that_edition_1_reserves_mean_nothing(opened: Opened) -> None:
+    values = np.arange(12.0)
+    plain, odd = opened(*(message("u", values, 1, box(scanningMode=scanning)) for scanning in (0, 16 | 1))).sheets
+    np.testing.assert_array_equal(_whole(odd), _whole(plain))
+
+
 @given(scanning=st.sampled_from(range(0, 256, 16)), rows=st.integers(1, 6), columns=st.integers(1, 6))
 def test_putting_values_in_order_undoes_how_they_are_stored(scanning: int, rows: int, columns: int) -> None:
     from gcs_windplan.wind.grib import _in_order
@@ -486,8 +496,14 @@ PROJECTED: dict[str, tuple[str, dict[str, Any]]] = {
     ),
     "mercator": ("+proj=merc +lat_ts=20", {"LaDInDegrees": 20.0}),
 }  # fmt: skip
+PROJECTED["polar_stereographic, southern, told by its flag"] = (
+    "+proj=stere +lat_0=-90 +lat_ts=-60 +lon_0=20",
+    PROJECTED["polar_stereographic, southern"][1] | {"LaDInDegrees": 60.0},
+)
 _CORNERS = {"lambert": (45.0, 5.0), "lambert, southern": (-44.0, 165.0), "polar_stereographic": (65.0, -10.0),
-            "polar_stereographic, southern": (-70.0, 40.0), "lambert_azimuthal_equal_area": (50.0, 4.0),
+            "polar_stereographic, southern": (-70.0, 40.0),
+            "polar_stereographic, southern, told by its flag": (-70.0, 40.0),
+            "lambert_azimuthal_equal_area": (50.0, 4.0),
             "mercator": (30.0, -170.0)}  # fmt: skip
 
 
@@ -509,15 +525,8 @@ def _projected(
     x, y = np.meshgrid(x0 + 1e5 * np.arange(5), y0 + 1e5 * np.arange(4))
     longitudes, latitudes = _warp(f"{projection} {earth}", globe, x, y)
     first = (0 if scanning & 64 else -1, -1 if scanning & 128 else 0)
-    length = 100_000_000 if name.startswith("lambert_az") else 100_000
-    steps = (
-        ("Dx", "Dy")
-        if length > 1e6
-        else ("DiInMetres", "DjInMetres")
-        if name == "mercator"
-        else ("DxInMetres", "DyInMetres")
-    )
-    grid = {"gridType": name.split(",")[0], "Ni": 5, "Nj": 4, **own, **dict.fromkeys(steps, length), **keys}
+    steps = [f"{axis}InMetres" for axis in (("Di", "Dj") if name == "mercator" else ("Dx", "Dy"))]
+    grid = {"gridType": name.split(",")[0], "Ni": 5, "Nj": 4, **own, **dict.fromkeys(steps, 100_000), **keys}
     grid |= {"latitudeOfFirstGridPointInDegrees": latitudes[first], "scanningMode": scanning}
     return grid | {"longitudeOfFirstGridPointInDegrees": longitudes[first] % 360.0}, latitudes, longitudes
 
@@ -801,37 +810,62 @@ def test_rows_and_columns_are_read_in_the_order_asked_for_and_as_a_copy(opened: 
         values[:] = 99.0
 
 
-def test_two_thousand_fields_cost_eccodes_a_look_at_each_kind_only(
-    opened: Opened, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def handles(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The handles that were made of messages; in the end all of them must have been released."""
+    made: list[int] = []
+    held: list[int] = []
+    new, release = eccodes.codes_new_from_message, eccodes.codes_release
+
+    def count(field: bytes) -> int:
+        made.append(new(field))
+        held.append(made[-1])
+        return made[-1]
+
+    def let_go(handle: int) -> None:
+        if handle in held:
+            held.remove(handle)
+        release(handle)
+
+    monkeypatch.setattr(eccodes, "codes_new_from_message", count)
+    monkeypatch.setattr(eccodes, "codes_release", let_go)
+    yield made
+    assert not held
+
+
+def test_eccodes_looks_once_at_fields_that_differ_only_in_time_and_member(opened: Opened, handles: list[int]) -> None:
     fields = [
         message("u", level=level, step=step, productDefinitionTemplateNumber=1, perturbationNumber=member)
         for level in (1000, 850)
         for step in range(4)
         for member in range(1, 5)
     ]
-    made: list[int] = []
-    new, release = eccodes.codes_new_from_message, eccodes.codes_release
-    monkeypatch.setattr(eccodes, "codes_new_from_message", lambda field: made.append(new(field)) or made[-1])
-    released: list[int] = []
-    monkeypatch.setattr(eccodes, "codes_release", lambda handle: released.append(handle) or release(handle))
     catalogue = opened(*fields)
     assert len({(s.level, s.time, s.member) for s in catalogue.sheets}) == 32
-    assert len(made) == 2
-    for sheet in catalogue.sheets:
-        _whole(sheet)
-    assert made == released
-    assert len(made) == 34
+    assert len(handles) == 2
 
 
-def test_handles_are_released_when_something_goes_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    released: list[int] = []
-    release = eccodes.codes_release
+def test_gusts_up_to_several_times_are_of_one_kind(opened: Opened, handles: list[int]) -> None:
+    gusts = [message("10fg", productDefinitionTemplateNumber=8, stepRange=f"{n}-{n + 3}") for n in (0, 3, 6)]
+    handles.clear()
+    times = [sheet.time for sheet in opened(*gusts).sheets]
+    assert times == [NOON + hours * 3600 for hours in (3, 6, 9)]
+    assert len(handles) == 1
+
+
+def test_the_last_few_fields_stay_decoded(opened: Opened, handles: list[int]) -> None:
+    sheets = opened(*(message("u", step=step) for step in range(6))).sheets
+    handles.clear()
+    for number, decoded in ((0, 1), (0, 1), (1, 2), (2, 3), (3, 4), (0, 4), (4, 5), (4, 5), (0, 6)):
+        _whole(sheets[number])
+        assert len(handles) == decoded
+
+
+def test_handles_are_released_when_something_goes_wrong(tmp_path: Path, handles: list[int]) -> None:
     path = tmp_path / "wind.grib"
     path.write_bytes(message("u", grid=box(95.0, 93.0)))
-    monkeypatch.setattr(eccodes, "codes_release", lambda handle: released.append(handle) or release(handle))
     assert "latitudes beyond the poles" in _say(path)
-    assert len(released) == 1
+    assert len(handles) == 1
 
 
 # ---------------------------------------------------------------------------------------------- errors
@@ -879,14 +913,34 @@ def test_a_message_that_does_not_end_where_it_says_is_an_error(
     assert capfd.readouterr() == ("", "")
 
 
-def test_sections_that_do_not_fit_are_an_error(tmp_path: Path) -> None:
-    field = bytearray(message("u"))
-    for at, octet, said in ((16 + 3, 255, "do not fit"), (16 + 4, 9, "do not fit")):
-        broken = field.copy()
-        broken[at] = octet
-        path = tmp_path / "wind.grib"
-        path.write_bytes(broken)
-        assert said in _say(path)
+@pytest.mark.parametrize(
+    ("edition", "at", "octet", "said"),
+    [
+        (2, 16 + 3, 255, "do not fit"),  # the length of section 1
+        (2, 16 + 4, 9, "do not fit"),  # its number
+        (1, 60, 200, "do not fit"),  # the length of section 2: eccodes crashes
+        (2, 37 + 6, 200, "is damaged, or too large"),  # the number of nodes: eccodes asks for more memory than there is
+    ],
+)
+def test_damage_is_an_error(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], edition: int, at: int, octet: int, said: str
+) -> None:
+    field = bytearray(message("u", edition=edition))
+    field[at] = octet
+    path = tmp_path / "wind.grib"
+    path.write_bytes(field)
+    assert said in _say(path)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_more_values_than_nodes_are_an_error_before_there_is_room_made_for_them(tmp_path: Path) -> None:
+    field = message("u", np.arange(12.0), missing=3.0)
+    sections = _sections(field)
+    sections[5] = sections[5][:5] + b"\x90" + sections[5][6:]
+    path = tmp_path / "wind.grib"
+    path.write_bytes(field[:16] + b"".join(sections[n] for n in sorted(sections)) + b"7777")
+    with open_grib(path) as catalogue, pytest.raises(WindError, match="is not as long as its grid"):
+        _whole(_only(catalogue))
 
 
 def test_values_that_cannot_be_decoded_are_an_error_when_they_are_read(tmp_path: Path) -> None:
@@ -927,17 +981,15 @@ def test_a_product_of_few_octets_does_not_matter(opened: Opened) -> None:
     assert len(opened(message("", productDefinitionTemplateNumber=254), message("u")).sheets) == 1
 
 
-def test_a_message_of_edition_1_beyond_8_megabytes_is_found(opened: Opened) -> None:
-    """Its length does not fit into three octets as it is."""
-    grid = box(80.0, -80.0, 0.0, 200.0, 0.1)
-    values = np.tile(np.arange(2001.0), 1601)
-    large = message("u", values, 1, grid)
-    assert int.from_bytes(large[4:7]) > 1 << 23
+def test_a_message_of_edition_1_beyond_16_megabytes_is_found(opened: Opened) -> None:
+    """Its length does not fit into three octets."""
+    grid = box(80.0, -80.0, 0.0, 224.0, 0.08)
+    large = message("u", np.tile(np.arange(2801.0), 2001), 1, grid)
+    assert len(large) > 1 << 24
     sheets = opened(message("v"), large, message("v")).sheets
     assert [sheet.quantity for sheet in sheets] == ["v", "u", "v"]
-    np.testing.assert_allclose(
-        sheets[1].read(np.array([5]), np.arange(2001))[0], np.arange(2001.0), atol=ONE_CM_PER_SECOND
-    )
+    row = sheets[1].read(np.array([5]), np.arange(2801))[0]
+    np.testing.assert_allclose(row, np.arange(2801.0), atol=ONE_CM_PER_SECOND)
 
 
 def test_a_path_with_letters_beyond_ascii(tmp_path: Path) -> None:

@@ -13,36 +13,69 @@ from hypothesis import strategies as st
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
+from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import GriddedWind
+from gcs_windplan.wind.placement import LatLonPlacement
 
 ONE_CM_PER_SECOND = 0.01
 FRAME = LocalFrame(GeoPoint(65.0, 19.0))
+EPOCH = 1.7e9  # [s since 1970] the departure of the tests
 
 
-def _wind(**changes: object) -> GriddedWind:
-    """From the west at 10 m/s by 0, falling to 4 m/s two hours later; twice that at 200 m."""
-    u = np.array([[10.0, 20.0], [4.0, 8.0]])[:, :, np.newaxis, np.newaxis] * np.ones((2, 2, 3, 3))
+def _columns(**changes: object) -> Columns:
+    """From the west at 10 m/s at 100 m, falling to 4 m/s two hours later; twice that at 200 m."""
+    u = np.array([[10.0, 20.0], [4.0, 8.0]]).reshape(2, 1, 1, 2) * np.ones((2, 3, 3, 2))
+    columns = Columns(
+        winds=np.stack([u, 0 * u], axis=-1),
+        above=np.empty(0),
+        heights=np.array([100.0, 200.0]).reshape(1, 1, 1, 2),
+        terrain=np.full((3, 3), -np.inf),
+        roughness=np.full((3, 3), 0.1),
+        times=EPOCH + np.array([0.0, 7200.0]),
+        rows=np.array([64.0, 65.0, 66.0]),
+        columns=np.array([17.0, 19.0, 21.0]),
+    )
+    return columns._replace(**changes)
+
+
+def _wind(columns: Columns | None = None, **changes: object) -> GriddedWind:
+    columns = _columns() if columns is None else columns
     wind = GriddedWind(
         name="made up",
-        frame=FRAME,
-        latitudes=np.array([64.0, 65.0, 66.0]),
-        longitudes=np.array([17.0, 19.0, 21.0]),
-        heights=np.array([100.0, 200.0]),
-        times=np.array([0.0, 7200.0]),
-        u=u,
-        v=0 * u,
+        placement=LatLonPlacement(FRAME, columns.rows, columns.columns),
+        columns=columns,
+        law=Law(LOG, 0.0, 0.0),
+        zero=EPOCH,
+        window=(float(columns.times[0]), float(columns.times[-1])),
     )
     return replace(wind, **changes)  # type: ignore[arg-type]
 
 
+def _above_ground() -> Columns:
+    return _columns(above=np.array([100.0, 200.0]), heights=np.empty((2, 3, 3, 0)))
+
+
 def _at(wind: GriddedWind, east: float, north: float, up: float, seconds: float = 0.0) -> FloatArray:
     result: FloatArray = wind.at(np.array([[east, north, up]]), seconds)[0]
+    assert result[2] == 0
     return result
 
 
 def test_it_is_linear_in_height_and_time() -> None:
     np.testing.assert_allclose(_at(_wind(), 0, 0, 150), [15, 0, 0], atol=ONE_CM_PER_SECOND)
     np.testing.assert_allclose(_at(_wind(), 0, 0, 150, 3600), [10.5, 0, 0], atol=ONE_CM_PER_SECOND)
+
+
+def test_each_point_may_have_its_own_time() -> None:
+    points = np.array([[0.0, 0.0, 150.0]] * 3)
+    found = _wind().at(points, np.array([0.0, 3600.0, 7200.0]))
+    np.testing.assert_allclose(found[:, 0], [15, 10.5, 6], atol=ONE_CM_PER_SECOND)
+
+
+def test_times_count_from_the_departure() -> None:
+    later = replace(_wind(), zero=EPOCH + 1800.0)
+    np.testing.assert_allclose(later.times, [-1800, 5400])
+    np.testing.assert_allclose(_at(later, 0, 0, 150, 1800.0), [10.5, 0, 0], atol=ONE_CM_PER_SECOND)
 
 
 def test_true_components_are_turned_into_the_local_grid() -> None:
@@ -53,36 +86,30 @@ def test_true_components_are_turned_into_the_local_grid() -> None:
     assert wind[1] == pytest.approx(0.168, abs=ONE_CM_PER_SECOND)
 
 
-@pytest.mark.parametrize("turn", [-360.0, 0.0, 360.0])
-def test_longitudes_may_be_counted_from_anywhere(turn: float) -> None:
-    wind = _wind(longitudes=np.array([17.0, 19.0, 21.0]) + turn)
-    np.testing.assert_allclose(_at(wind, 0, 0, 100), [10, 0, 0], atol=ONE_CM_PER_SECOND)
+def test_above_the_highest_level_it_is_not_known() -> None:
+    assert np.isnan(_at(_wind(), 0, 0, 201)[:2]).all()
+    np.testing.assert_allclose(_at(_wind(), 0, 0, 200.005), [20, 0, 0], atol=ONE_CM_PER_SECOND)
 
 
-def test_below_the_lowest_level_its_wind_is_taken() -> None:
-    np.testing.assert_allclose(_at(_wind(), 0, 0, -50), [10, 0, 0], atol=ONE_CM_PER_SECOND)
-
-
-def test_above_the_highest_level_the_wind_is_not_known() -> None:
-    assert np.isnan(_at(_wind(), 0, 0, 235)).all()
-    assert np.isfinite(_at(_wind(), 0, 0, 200)).all()
+def test_below_the_lowest_level_a_law_leads_it_to_the_ground() -> None:
+    """Over ground at 50 m the level at 100 m lies 50 m high; at 5 m a power law of 0.2 leaves (5 / 50) ** 0.2."""
+    wind = _wind(ground=lambda points: np.full(len(points), 50.0), law=Law(POWER, 0.2, 0.0))
+    np.testing.assert_allclose(_at(wind, 0, 0, 55), [10 * 0.1**0.2, 0, 0], atol=ONE_CM_PER_SECOND)
+    np.testing.assert_allclose(_at(wind, 0, 0, 50), [0, 0, 0])
+    assert np.isnan(_at(_wind(), 0, 0, 55)[:2]).all()  # nobody knows where the ground is
 
 
 def test_levels_above_ground_follow_the_ground() -> None:
-    wind = _wind(ground=lambda points: 1000 + points[:, 0] / 10)
+    wind = _wind(_above_ground(), ground=lambda points: 1000 + points[:, 0] / 10)
     np.testing.assert_allclose(_at(wind, 500, 0, 1200), [15, 0, 0], atol=ONE_CM_PER_SECOND)
-    assert np.isnan(_at(wind, 500, 0, 1300)).all()
+    assert np.isnan(_at(wind, 500, 0, 1300)[:2]).all()
 
 
-def test_unknown_ground_is_an_error() -> None:
-    wind = _wind(ground=lambda points: np.full(len(points), np.nan))
-    with pytest.raises(WindError, match="terrain has to cover"):
-        _at(wind, 0, 0, 150)
-
-
-def test_a_single_level_holds_at_every_height() -> None:
-    wind = _wind(heights=np.array([10.0]), u=np.full((2, 1, 3, 3), 5.0), v=np.zeros((2, 1, 3, 3)))
-    np.testing.assert_allclose(_at(wind, 0, 0, 3000), [5, 0, 0], atol=ONE_CM_PER_SECOND)
+def test_over_unknown_ground_the_forecasts_own_counts() -> None:
+    unknown = _wind(_above_ground(), ground=lambda points: np.full(len(points), np.nan))
+    assert np.isnan(_at(unknown, 0, 0, 150)[:2]).all()
+    own = replace(unknown, columns=_above_ground()._replace(terrain=np.full((3, 3), 30.0)))
+    np.testing.assert_allclose(_at(own, 0, 0, 180), [15, 0, 0], atol=ONE_CM_PER_SECOND)
 
 
 def test_outside_of_the_area_is_an_error_unless_extended() -> None:
@@ -90,6 +117,17 @@ def test_outside_of_the_area_is_an_error_unless_extended() -> None:
         _at(_wind(), 0, 122_000, 100)
     extended = _at(_wind(extend=True), 0, 122_000, 100)
     np.testing.assert_allclose(extended, [10, 0, 0], atol=ONE_CM_PER_SECOND)
+
+
+def test_a_forecast_for_one_place_reaches_15_km() -> None:
+    one = _columns(
+        winds=_columns().winds[:, :1, :1], terrain=np.full((1, 1), -np.inf), roughness=np.full((1, 1), 0.1),
+        rows=np.array([65.0]), columns=np.array([19.0]),
+    )  # fmt: skip
+    wind = _wind(one)
+    np.testing.assert_allclose(_at(wind, 10_000, 10_000, 100)[0], 10, atol=ONE_CM_PER_SECOND)
+    with pytest.raises(WindError, match=r"ends [45]\.\d km short of .* knows 65\.0000, 19\.0000 and 15 km around"):
+        _at(wind, 0, 20_000, 100)
 
 
 def test_outside_of_its_times_is_an_error_even_if_extended() -> None:
@@ -100,9 +138,11 @@ def test_outside_of_its_times_is_an_error_even_if_extended() -> None:
 
 
 def test_a_single_time_is_steady() -> None:
-    still = _wind()
-    wind = replace(still, times=still.times[:1], u=still.u[:1], v=still.v[:1], heights=still.heights[:1], window=None)
+    still = _columns()
+    one = still._replace(winds=still.winds[:1], times=still.times[:1])
+    wind = _wind(one, window=(-math.inf, math.inf))
     assert _at(wind, 0, 0, 100, 1e7)[0] == pytest.approx(10)
+    assert len(wind.times) == 0
 
 
 def test_places_that_are_not_finite_are_refused() -> None:
@@ -114,15 +154,24 @@ def test_no_points_give_no_wind() -> None:
     assert _wind().at(np.empty((0, 3))).shape == (0, 3)
 
 
+def test_many_points_are_the_same_as_few() -> None:
+    random = np.random.default_rng(3)
+    points = random.uniform((-80e3, -80e3, 100.0), (80e3, 80e3, 200.0), (60_000, 3))
+    some = slice(50_000, 50_040)
+    np.testing.assert_array_equal(_wind().at(points)[some], _wind().at(points[some]))
+
+
 def test_the_resolution_is_half_the_smallest_spacing() -> None:
-    """2° of longitude at 66° are 90.5 km, 1° of latitude 111.2 km."""
+    """2° of longitude at 66° are 90.5 km, 1° of latitude 111.2 km; levels above the ground follow the ground."""
     assert _wind().resolution == pytest.approx(45_200, rel=0.01)
+    assert _wind(_above_ground(), ground_resolution=30.0).resolution == 30.0
+    assert _wind(ground_resolution=30.0).resolution == pytest.approx(45_200, rel=0.01)
 
 
 @given(
     east=st.floats(-80_000, 80_000),
     north=st.floats(-80_000, 80_000),
-    up=st.floats(0, 200),
+    up=st.floats(100, 200),
     seconds=st.floats(0, 7200),
 )
 def test_the_wind_never_exceeds_the_values_of_the_grid(east: float, north: float, up: float, seconds: float) -> None:
@@ -133,13 +182,14 @@ def test_the_wind_never_exceeds_the_values_of_the_grid(east: float, north: float
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"latitudes": np.array([66.0, 65.0, 64.0])}, "latitudes have to be finite and ascend"),
+        ({"rows": np.array([66.0, 65.0, 64.0])}, "rows have to be finite and ascend"),
         ({"times": np.array([0.0, 0.0])}, "times have to be finite and ascend"),
-        ({"u": np.full((2, 2, 3, 3), np.nan)}, "u are not finite"),
-        ({"v": np.zeros((2, 2, 3, 4))}, r"v have the shape \(2, 2, 3, 4\)"),
-        ({"heights": np.array([200.0, 100.0])}, "do not ascend in every column"),
+        ({"winds": np.full((2, 3, 3, 2, 2), np.nan)}, "not finite everywhere"),
+        ({"roughness": np.zeros((3, 3))}, "roughness length is not above 0"),
+        ({"terrain": np.zeros((3, 4))}, r"terrain have the shape \(3, 4\), not \(3, 3\)"),
+        ({"heights": np.array([200.0, 100.0]).reshape(1, 1, 1, 2)}, "do not ascend in every column"),
     ],
 )
 def test_what_does_not_fit_is_refused(changes: dict[str, object], message: str) -> None:
     with pytest.raises(WindError, match=message):
-        _wind(**changes)
+        _wind(_columns(**changes))

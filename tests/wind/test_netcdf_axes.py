@@ -180,9 +180,24 @@ def test_single_times_and_runs(
     assert _times(path, {**variables, "u10": wind(f"{along} lat lon", *shape)}) == expected
 
 
+def test_a_field_of_times_is_no_time_axis(path: Path) -> None:
+    content = {
+        "time": ("time", [1.0, 2.0], {"units": HOURS}),
+        "time_of_maximum": ("lat lon", np.zeros((3, 4)), {"units": HOURS, "standard_name": "time"}),
+        "u10": wind("time lat lon", 2, 3, 4),
+    }
+    assert _times(path, content) == [(1, None), (2, None)]
+
+
 def test_a_lead_in_unknown_units_is_not_missed_where_the_time_is_told(path: Path) -> None:
     said = {"standard_name": "forecast_period", "units": "model steps"}
     content = {"time": ("", 4.0, {"units": HOURS}), "step": ("", 2.0, said), "u10": wind("lat lon", 3, 4)}
+    assert _times(path, content) == [(4, None)]
+    content = {
+        "time": ("time", [4.0], {"units": HOURS}),
+        "step": ("time", [2.0], said),
+        "u10": wind("time lat lon", 1, 3, 4),
+    }
     assert _times(path, content) == [(4, None)]
 
 

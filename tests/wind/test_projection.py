@@ -219,6 +219,7 @@ def test_an_ellipsoid_makes_no_shift_of_datum() -> None:
         ({"latitude_of_projection_origin": None}, "m", "crs has no latitude_of_projection_origin: set it"),
         ({}, "", "x has no units; set its attribute `units` to a height"),
         ({}, "degrees", "x is in 'degrees'"),
+        ({"standard_parallel": [30.0, -30.0]}, "m", r"its grid mapping crs \(\+proj=lcc .* cannot be worked out"),
     ],
 )
 def test_mappings_that_cannot_be_used_are_explained(changes: dict[str, Any], units: str, message: str) -> None:
@@ -226,3 +227,9 @@ def test_mappings_that_cannot_be_used_are_explained(changes: dict[str, Any], uni
     mapping = Variable("crs", (), (), {name: value for name, value in said.items() if value is not None})
     with pytest.raises(WindError, match=message):
         unprojected(np.array([0.0]), np.array([0.0]), mapping, (units, units))
+
+
+def test_places_that_no_projection_reaches_are_refused() -> None:
+    mapping = CASES["Lambert, equal area"][0]
+    with pytest.raises(WindError, match=r"cannot be worked out|cannot reach"):
+        unprojected(np.array([1.0, 9e7]), np.array([0.0]), mapping, ("m", "m"))

@@ -66,6 +66,8 @@ def test_missing_and_unknown_units_name_the_variable_and_what_to_set() -> None:
         converted(np.zeros(1), "height", "z", "bananas")
     with pytest.raises(WindError, match="lnsp is in 'Pa', but the logarithm"):
         unlogged(np.zeros(1), "lnsp", "Pa")
+    with pytest.raises(WindError, match="lnsp goes up to 100000, which is the logarithm of no pressure"):
+        unlogged(np.array([np.nan, 1e5]), "lnsp", "1")
 
 
 @pytest.mark.parametrize(

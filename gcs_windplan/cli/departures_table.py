@@ -1,0 +1,85 @@
+"""Departures as a table on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.table import Table
+
+from gcs_windplan.cli.tables import make_console, spread_clock
+from gcs_windplan.cores import available_cores
+from gcs_windplan.flight import clock
+
+if TYPE_CHECKING:
+    from gcs_windplan.departures import Departure
+    from gcs_windplan.request import Request
+
+_BAR = 24  # characters of the longest time
+
+
+def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:
+    """A row for each departure, the quickest one marked, and what the sweep took."""
+    flown = [one for one in found if one.seconds is not None]
+    best = min(flown, key=lambda one: one.seconds or 0.0, default=None)
+    longest = max((one.seconds or 0.0 for one in flown), default=1.0)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    table.add_column("departure UTC", no_wrap=True)
+    ensemble = bool(request.members)
+    names = ["time min", *(["10 - 90 %"] if ensemble else []), "km", "wind m/s", "gust m/s"]
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("")
+    for one in found:
+        mark = "  best" if one is best else ""
+        table.add_row(f"{one.moment:%Y-%m-%d %H:%M}", *_cells(one, ensemble), _last(one, longest) + mark)
+    console = make_console()
+    console.print(table)
+    for line in _summary(request, found, flown, best, took, cores):
+        console.print(line, soft_wrap=True, markup=False)
+
+
+def _cells(one: Departure, ensemble: bool) -> list[str]:
+    if one.seconds is None or one.length is None:
+        return ["-"] * (5 if ensemble else 4)
+    spread = []
+    if ensemble:
+        low, high = (one.spread.at(q) if one.spread is not None else one.seconds for q in (0.1, 0.9))
+        spread = [f"{spread_clock(low)} - {spread_clock(high)}"]
+    gust = "-" if one.gust is None else f"{one.gust:.1f}"
+    return [clock(one.seconds), *spread, f"{one.length / 1000:.2f}", f"{one.wind:.1f}", gust]
+
+
+def _last(one: Departure, longest: float) -> str:
+    """A bar as long as the flight, or why there is none."""
+    if one.seconds is None:
+        return "no: " + (one.reason or "").split(", and what leads on is ")[-1].split(". ")[0].removeprefix(
+            "no route: "
+        )
+    bar = "█" * max(1, round(_BAR * one.seconds / longest))
+    stopped = one.spread.unflyable if one.spread is not None else 0
+    return bar + (f" not in {stopped} of {len(one.spread.seconds)}" if stopped and one.spread is not None else "")
+
+
+def _summary(
+    request: Request, found: Sequence[Departure], flown: Sequence[Departure], best: Departure | None, took: float,
+    cores: int | None,
+) -> list[str]:  # fmt: skip
+    """What to make of it, and what it took."""
+    if best is None:
+        lines = [f"{request.name}: no departure can be flown"]
+    else:
+        lines = [
+            f"{request.name}: quickest when leaving {best.moment:%Y-%m-%d %H:%M} UTC, {clock(best.seconds or 0.0)} min;"
+            f" {len(flown)} of {len(found)} departures can be flown"
+        ]
+    lines.append(f"wind: {request.wind.name}")
+    members = f" x {len(request.members)} members" if request.members else ""
+    worked = sum(one.worked for one in found)
+    used = min(available_cores() if cores is None else cores, len(found))
+    lines.append(
+        f"{len(found)} departures{members} in {took:.1f} s on {used} {'core' if used == 1 else 'cores'}: {worked:.1f} s of"
+        f" one core's work, {worked / took:.1f} times as fast"
+    )
+    return lines

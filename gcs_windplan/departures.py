@@ -1,0 +1,108 @@
+"""When to fly: a route for each of several departures, on one veil, on all cores."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cores import available_cores
+from gcs_windplan.cost import CostChoice
+from gcs_windplan.errors import NoRouteError, WindError
+from gcs_windplan.flight import fly_legs
+from gcs_windplan.planner import Ready, Spread, find_route, prepare, spread_of
+from gcs_windplan.request import Request
+from gcs_windplan.shaping import shape_quickly
+from gcs_windplan.wind.field import WindField
+
+_SAMPLES = 8  # of the wind along each leg
+
+
+@dataclass(frozen=True, slots=True)
+class Departure:
+    """One departure: how long the best route takes, and what wind it meets.
+
+    `seconds` and `length` [m] of the route, None where there is none: then `reason` says why. `spread` is the same
+    route in every member of an ensemble. `wind` and `gust` are the strongest along the route in any member [m/s]; the
+    gust is None where the forecast tells none. `worked` is the processor's time that it took [s].
+    """
+
+    moment: datetime
+    seconds: float | None = None
+    length: float | None = None
+    spread: Spread | None = None
+    wind: float | None = None
+    gust: float | None = None
+    reason: str | None = None
+    worked: float = 0.0
+
+
+def moments_between(first: datetime, last: datetime, every: timedelta) -> list[datetime]:
+    """The departures from the first to the last one."""
+    return [first + k * every for k in range(int((last - first) / every) + 1)]
+
+
+def sweep(
+    request: Request, moments: Sequence[datetime], choice: CostChoice | None = None, cores: int | None = None
+) -> Iterator[Departure]:
+    """The best route at each departure, in the order of the moments.
+
+    The forecast has to reach over all of them. The sites stand, the veil is laid and the wind is sampled once; the
+    routes are found on `cores` cores (all, if not said). Over an ensemble each route is planned in the members' mean and
+    flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
+    """
+    ready = prepare(replace(request, members=())) if request.members else prepare(request)
+    if request.departure is not None and len(moments):
+        begins = [(moment - request.departure).total_seconds() for moment in moments]
+    else:
+        begins = [0.0] * len(moments)
+    ready.windy.cover(min(begins), max(begins))
+    job = _Job(ready, request, request.cost if choice is None else choice)
+    workers = min(available_cores() if cores is None else cores, max(len(moments), 1))
+    if workers == 1:
+        yield from (job.depart(moment, begin) for moment, begin in zip(moments, begins, strict=True))
+        return
+    import joblib
+
+    yield from joblib.Parallel(n_jobs=workers, return_as="generator")(
+        joblib.delayed(job.depart)(moment, begin) for moment, begin in zip(moments, begins, strict=True)
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Job:
+    """What the workers share: the veil in the mean wind, the request with all members, the cost."""
+
+    ready: Ready
+    request: Request
+    choice: CostChoice
+
+    def depart(self, moment: datetime, begin: float) -> Departure:
+        """The best route that begins at `begin` [s after the request's departure]."""
+        since = time.process_time()
+        try:
+            found = find_route(self.ready, self.choice, begin, shape_quickly)
+            if not np.isfinite(found.arrival):
+                raise NoRouteError("the route cannot be flown where the wind is looked at closely.", {})
+        except (NoRouteError, WindError) as error:
+            return Departure(moment, reason=str(error), worked=time.process_time() - since)
+        length = float(np.sum(np.linalg.norm(np.diff(found.points, axis=0), axis=1)))
+        spread = spread_of(self.request, found.points, begin)
+        wind, gust = self._strongest(found.points, begin)
+        return Departure(moment, found.arrival - begin, length, spread, wind, gust, worked=time.process_time() - since)
+
+    def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
+        """The strongest wind and gust along a route in any member [m/s]."""
+        request = self.request
+        fields: Sequence[WindField] = request.members or (request.wind,)
+        _, times = fly_legs(points, request.wind, request.vehicle, begin)
+        share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+        places = (points[:-1, None] + share[None, :, None] * np.diff(points, axis=0)[:, None]).reshape(-1, 3)
+        when = (times[:-1, None] + share[None, :] * np.diff(times)[:, None]).ravel()
+        winds = max(float(np.nanmax(np.hypot(*one.at(places, when)[:, :2].T))) for one in fields)
+        gusts = [float(np.nanmax(np.hypot(*one.at(places, when)[:, :2].T))) for one in request.gusts]
+        return winds, max(gusts) if gusts else None

@@ -1,0 +1,32 @@
+"""Departures as JSON, for scripts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gcs_windplan.departures import Departure
+    from gcs_windplan.request import Request
+
+
+def format_departures(request: Request, found: Sequence[Departure]) -> str:
+    """The departures as JSON: SI units, times in UTC; members that cannot fly it have null seconds."""
+    rows = [
+        {
+            "departure": one.moment.isoformat(),
+            "feasible": one.seconds is not None,
+            "seconds": one.seconds,
+            "length": one.length,
+            "member_seconds": None
+            if one.spread is None
+            else [s if s < float("inf") else None for s in one.spread.seconds],
+            "strongest_wind": one.wind,
+            "strongest_gust": one.gust,
+            "reason": one.reason,
+        }
+        for one in found
+    ]
+    summary = {"name": request.name, "wind": request.wind.name, "departures": rows}
+    return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
