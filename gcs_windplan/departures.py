@@ -52,8 +52,8 @@ def sweep(
     """The best route at each departure, in the order of the moments.
 
     The forecast has to reach over all of them. The sites stand, the veil is laid and the wind is sampled once; the
-    routes are found on `cores` cores (all, if not said). Over an ensemble each route is planned in the members' mean and
-    flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
+    routes are found on `cores` cores (all, if not said). Over an ensemble each route is planned in the members' mean
+    and flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
     """
     ready = prepare(replace(request, members=())) if request.members else prepare(request)
     if request.departure is not None and len(moments):

@@ -15,7 +15,6 @@ from gcs_windplan.terrain import Terrain
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
-
 _NEAR_THE_END = 3600.0  # [s] a leg that stops so shortly before the forecast's end stops because of it
 
 
@@ -133,8 +132,8 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField) -
         i = int(stopped[0])
         if len(wind.times) > 1 and np.isfinite(parts.along[i]) and times[i] >= wind.times[-1] - _NEAR_THE_END:
             raise NoRouteError(
-                f"the forecast ends {wind.times[-1] / 60:.0f} min after departure, during leg {i + 1} at the latest: take"
-                " a forecast that reaches further, or depart earlier.",
+                f"the forecast ends {wind.times[-1] / 60:.0f} min after departure, during leg {i + 1} at the latest:"
+                " take a forecast that reaches further, or depart earlier.",
                 {"wind": len(stopped)},
             )
         if not np.isfinite(parts.along[i] + parts.across[i]):

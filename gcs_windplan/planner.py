@@ -164,8 +164,8 @@ def prepare(request: Request) -> Ready:
 def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
-    Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the whole:
-    the one for the members' mean is flown in all members too, and the better one is taken.
+    Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the
+    whole: the one for the members' mean is flown in all members too, and the better one is taken.
     """
     request = ready.request
     try:

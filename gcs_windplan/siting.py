@@ -224,7 +224,10 @@ def _low_return(way: str, levels: tuple[float, float], lowest: float, clearance:
 def windless_sites(request: Request, points: FloatArray) -> list[Problem]:
     """The sites (n, 3) at which the wind is not known."""
     unknown = np.isnan(request.wind.at(points)[:, 0])
-    text = "lies above the highest level of the wind ({}): lower it, take a file with higher levels, or carry it up with `profile`"
+    text = (
+        "lies above the highest level of the wind ({}): lower it, take a file with higher levels, or carry it up with"
+        " `profile`"
+    )
     return [
         Problem(text.format(request.wind.name), site.field)
         for site, gone in zip(request.sites, unknown, strict=True)

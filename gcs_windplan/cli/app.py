@@ -10,7 +10,20 @@ from typing import Annotated
 
 import typer
 
-from gcs_windplan.cli import clear, compare, departures, diff, linking, plan, pull, push, reproduce, schema, vehicle
+from gcs_windplan.cli import (
+    clear,
+    compare,
+    departures,
+    diff,
+    linking,
+    plan,
+    pull,
+    push,
+    reproduce,
+    schema,
+    vehicle,
+    wind,
+)
 from gcs_windplan.errors import WindplanError
 
 _EPILOG = "Exit codes: 0 done; 1 no route exists; 2 something handed in cannot be used."
@@ -33,6 +46,7 @@ app.command("clear", help=clear.HELP, epilog=linking.EPILOG)(clear.clear)
 app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
 app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
 app.command("departures", help=departures.HELP, epilog=_EPILOG)(departures.departures)
+app.command("wind", help=wind.HELP, epilog=_EPILOG)(wind.wind)
 app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
 

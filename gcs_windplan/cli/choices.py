@@ -24,7 +24,7 @@ Folder: TypeAlias = Annotated[
 def read_request(
     mission: Path, airspeed: str | None, departure: datetime | None = None, lasting: float | None = None
 ) -> Request:
-    """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in the library."""
+    """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in it."""
     from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.spec import read_mission
     from gcs_windplan.spec.values import AIRSPEED

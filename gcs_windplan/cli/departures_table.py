@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gcs_windplan.departures import Departure
     from gcs_windplan.request import Request
 
-_BAR = 24  # characters of the longest time
+_BAR = 18  # characters of the longest time
 
 
 def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:
@@ -27,7 +27,7 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("departure UTC", no_wrap=True)
     ensemble = bool(request.members)
-    names = ["time min", *(["10 - 90 %"] if ensemble else []), "km", "wind m/s", "gust m/s"]
+    names = ["time min", *(["10 - 90 %", "flown in"] if ensemble else []), "km", "wind m/s", "gust m/s"]
     for name in names:
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("")
@@ -42,11 +42,12 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
 
 def _cells(one: Departure, ensemble: bool) -> list[str]:
     if one.seconds is None or one.length is None:
-        return ["-"] * (5 if ensemble else 4)
+        return ["-"] * (6 if ensemble else 4)
     spread = []
     if ensemble:
         low, high = (one.spread.at(q) if one.spread is not None else one.seconds for q in (0.1, 0.9))
-        spread = [f"{spread_clock(low)} - {spread_clock(high)}"]
+        able = f"{len(one.spread.seconds) - one.spread.unflyable}/{len(one.spread.seconds)}" if one.spread else "-"
+        spread = [f"{spread_clock(low)} - {spread_clock(high)}", able]
     gust = "-" if one.gust is None else f"{one.gust:.1f}"
     return [clock(one.seconds), *spread, f"{one.length / 1000:.2f}", f"{one.wind:.1f}", gust]
 
@@ -57,9 +58,7 @@ def _last(one: Departure, longest: float) -> str:
         return "no: " + (one.reason or "").split(", and what leads on is ")[-1].split(". ")[0].removeprefix(
             "no route: "
         )
-    bar = "█" * max(1, round(_BAR * one.seconds / longest))
-    stopped = one.spread.unflyable if one.spread is not None else 0
-    return bar + (f" not in {stopped} of {len(one.spread.seconds)}" if stopped and one.spread is not None else "")
+    return "█" * max(1, round(_BAR * one.seconds / longest))
 
 
 def _summary(
@@ -79,7 +78,7 @@ def _summary(
     worked = sum(one.worked for one in found)
     used = min(available_cores() if cores is None else cores, len(found))
     lines.append(
-        f"{len(found)} departures{members} in {took:.1f} s on {used} {'core' if used == 1 else 'cores'}: {worked:.1f} s of"
-        f" one core's work, {worked / took:.1f} times as fast"
+        f"{len(found)} departures{members} in {took:.1f} s on {used} {'core' if used == 1 else 'cores'}: {worked:.1f} s"
+        f" of one core's work, {worked / took:.1f} times as fast"
     )
     return lines

@@ -66,8 +66,8 @@ def _head(plan: Plan) -> list[str]:
         low, median, high = (spread_clock(plan.spread.at(quantile)) for quantile in (0.1, 0.5, 0.9))
         stopped = f"; {plan.spread.unflyable} of them cannot fly it" if plan.spread.unflyable else ""
         lines.append(
-            f"in the {len(plan.spread.seconds)} members, planned for {100 * plan.request.robust:g} %: median {median} min,"
-            f" 10 - 90 % {low} - {high} min{stopped}; the legs above are in their mean"
+            f"in the {len(plan.spread.seconds)} members, planned for {100 * plan.request.robust:g} %: median {median}"
+            f" min, 10 - 90 % {low} - {high} min{stopped}; the legs above are in their mean"
         )
     return lines
 

@@ -23,7 +23,9 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.kernels.triangle import PAPER, Performance, leg_seconds, wind_angle
 
-_ROUNDS = 20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
+_ROUNDS = (
+    20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
+)
 _SAME = 1e-6  # [s]
 
 DISTANCE, ANGLE, HYBRID, TIME = 0.0, 1.0, 2.0, 3.0

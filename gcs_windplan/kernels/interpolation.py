@@ -1,7 +1,7 @@
 """Linear interpolation in forecasts whose levels may lie at another height in every column.
 
-A column has levels at fixed heights above the ground, then levels at heights above mean sea level, either of them may be
-missing. Between the two, the wind is linear as well. Below the lowest level a law leads it down to the ground:
+A column has levels at fixed heights above the ground, then levels at heights above mean sea level; either of them may
+be missing. Between the two, the wind is linear as well. Below the lowest level a law leads it down to the ground:
 
       z ▲      ── level above sea level
         │      ── level above sea level          a forecast level below the forecast's own ground (or below the levels
@@ -47,7 +47,9 @@ class Columns(NamedTuple):
 
     winds: FloatArray  # (times, rows, columns, levels, 2) u and v [m/s]
     above: FloatArray  # (na,) [m above ground] ascending, perhaps none
-    heights: FloatArray  # (times, rows, columns, levels - na) [m above mean sea level] ascending; (1, 1, 1, ...): in all
+    heights: (
+        FloatArray  # (times, rows, columns, levels - na) [m above mean sea level] ascending; (1, 1, 1, ...): in all
+    )
     terrain: FloatArray  # (rows, columns) the forecast's own ground [m above mean sea level], -inf where unknown
     roughness: FloatArray  # (rows, columns) [m]
     times: FloatArray  # (times,) ascending, as are the next two

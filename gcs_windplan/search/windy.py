@@ -21,8 +21,8 @@ class WindyVeil:
     """A veil in one wind, or in those of an ensemble's members.
 
     `points` (n, 3) [m]. `winds` [m/s] is (n, 3) in steady wind, (times, n, 3) where it changes, with the members before
-    that where there are several; no wind where the ground is unknown. `times` [s since departure] are the moments sampled
-    so far; None in steady wind.
+    that where there are several; no wind where the ground is unknown. `times` [s since departure] are the moments
+    sampled so far; None in steady wind.
     """
 
     veil: GridVeil | PrmVeil

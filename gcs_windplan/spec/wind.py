@@ -36,9 +36,7 @@ class Winds:
     gusts: tuple[WindField, ...] = ()
 
 
-def build_wind(
-    document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure
-) -> Winds:
+def build_wind(document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure) -> Winds:
     """The wind; raises `WindError`."""
     model = document.model.wind
     if model.forecast is not None:
@@ -53,9 +51,7 @@ def build_wind(
     return Winds(air.ProfileWind(field, terrain.heights_at, _law(model.profile), terrain.resolution))
 
 
-def _forecast(
-    document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure
-) -> Winds:
+def _forecast(document: MissionDocument, frame: LocalFrame, terrain: Terrain, area: Extent, when: Departure) -> Winds:
     """The winds of the forecast's files."""
     model = document.model.wind
     assert model.forecast is not None

@@ -259,8 +259,8 @@ class WindModel(Section):
     )
     profile: ProfileModel | None = Field(
         default=None,
-        description="how the wind changes with height above ground; with `constant` or `paper`, and with `forecast` below"
-        " its lowest level and above levels that are all above ground",
+        description="how the wind changes with height above ground; with `constant` or `paper`, and with `forecast`"
+        " below its lowest level and above levels that are all above ground",
     )
 
     @classmethod

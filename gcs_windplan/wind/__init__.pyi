@@ -4,11 +4,11 @@ from .analytic import Diverging as Diverging
 from .analytic import Jet as Jet
 from .analytic import JetReading as JetReading
 from .analytic import Rotation as Rotation
+from .field import Ground as Ground
+from .field import WindField as WindField
 from .forecast import Forecast as Forecast
 from .forecast import Wanted as Wanted
 from .forecast import read_forecast as read_forecast
-from .field import Ground as Ground
-from .field import WindField as WindField
 from .gridded import GriddedWind as GriddedWind
 from .profile import LogLaw as LogLaw
 from .profile import PowerLaw as PowerLaw

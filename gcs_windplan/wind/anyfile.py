@@ -29,7 +29,7 @@ def open_catalogue(path: Path) -> AbstractContextManager[Catalogue]:
     head = _head(path)
     text = _text(head)
     if head.startswith((b"CDF", b"\x89HDF")):
-        from gcs_windplan.wind.netcdf_sheets import open_netcdf
+        from gcs_windplan.wind.netcdf import open_netcdf
 
         return open_netcdf(path)
     if text.startswith(("{", "[")):

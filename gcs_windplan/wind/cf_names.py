@@ -183,7 +183,7 @@ def _stated(variable: Variable) -> Level | None:
     text = variable.text("level")
     if text == "surface":
         return SURFACE
-    match = re.fullmatch(r"([\d.]+) (m above ground|mb|m above mean sea level)", text)
+    match = re.fullmatch(r"(\d+(?:\.\d+)?) (m above ground|mb|m above mean sea level)", text)
     if not match:
         return None
     number = float(match[1])

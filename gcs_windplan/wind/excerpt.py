@@ -91,9 +91,7 @@ def winds_by_level(
 def _of_level(catalogue: Catalogue, level: Level) -> Catalogue:
     """A catalogue without the winds of other levels."""
     wind = ("u", "v", "speed", "direction")
-    return replace(
-        catalogue, sheets=tuple(s for s in catalogue.sheets if s.level == level or s.quantity not in wind)
-    )
+    return replace(catalogue, sheets=tuple(s for s in catalogue.sheets if s.level == level or s.quantity not in wind))
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +136,7 @@ class Excerpt:
     @cached_property
     def terrain(self) -> FloatArray:
         """The forecast's own ground above mean sea level [m] (rows, columns), NaN where unknown."""
-        terrain = self.assembly._surface("terrain", np.nan)
-        return terrain
+        return self.assembly._surface("terrain", np.nan)
 
     @cached_property
     def assembly(self) -> _Assembly:

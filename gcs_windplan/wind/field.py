@@ -49,6 +49,6 @@ class WindField(Protocol):
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3): east, north, height above mean sea level [m].
 
-        `seconds`, one or one a point (n,), count from the departure. NaN above the heights for which the field is known: no leg goes there.
-        Raises `WindError` outside of the field's area or times.
+        `seconds`, one or one a point (n,), count from the departure. NaN above the heights for which the field is
+        known: no leg goes there. Raises `WindError` outside of the field's area or times.
         """

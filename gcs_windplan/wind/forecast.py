@@ -1,6 +1,6 @@
 """Forecast files become winds: one or several files of any format, one field a member.
 
-    paths ─ catalogues ─ pairs of sheets ─ part of the grid ─ read, turned to true north, heights ─▶ Forecast
+paths ─ catalogues ─ pairs of sheets ─ part of the grid ─ read, turned to true north, heights ─▶ Forecast
 """
 
 from __future__ import annotations
@@ -108,6 +108,8 @@ def read_forecast(paths: Sequence[Path | str], wanted: Wanted) -> Forecast:
             source = f"{title} ({titles[0][:80]})" if titles else title
             return _Assembly(winds, wanted, part_of(winds.grid, wanted.frame, wanted.area, wanted.extend)).made(source)
         except WindError as error:
+            if str(error).startswith(tuple(map(str, files))):
+                raise
             raise WindError(f"{', '.join(map(str, files))}: {error}") from error
 
 
@@ -160,7 +162,9 @@ class _Assembly:
                 for time in winds.times
             ]
         )
-        beyond = np.stack([heights[level] for level in upwards], axis=-1) if upwards else np.empty((*values.shape[:3], 0))
+        beyond = (
+            np.stack([heights[level] for level in upwards], axis=-1) if upwards else np.empty((*values.shape[:3], 0))
+        )
         _check_complete(values, beyond, terrain, levels, winds)
         above = [level.value if level.kind == "height" else self.wanted.known_height for level in winds.above]
         return Columns(
@@ -335,4 +339,3 @@ def _check_complete(
         )
     if not np.isfinite(beyond).all():
         raise WindError("the heights of its levels are missing at some nodes: fill them or cut them off")
-

@@ -6,6 +6,7 @@ At a half level the pressure is a + b · the surface's (CF 1.11, appendix D, hyb
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -23,35 +24,48 @@ _SEA_LEVEL = 101325.0  # [Pa] ISO 2533: only used to sort levels
 _A_AT_GROUND, _B_AT_GROUND = 5.0, 1e-3  # [Pa], [1]: how far from 0 and 1 what adds up from single precision may end
 
 
-def model_levels(file: NetcdfFile, axis: Variable, data: Variable) -> tuple[list[int], Halves | None]:
-    """The numbers of the levels along an axis, 1 at the top, and the half levels as far as the file has them.
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelLevels:
+    """The numbers of the levels along an axis, 1 at the top, and the half levels as far as the file has them all.
 
-    `data` is what lies on the levels. Numbers count the file's own levels where they would not fit its half levels.
+    `counted`: the numbers only count the axis's own levels, for its values are no numbers of levels.
     """
+
+    numbers: tuple[int, ...]
+    half_levels: Halves | None
+    counted: bool
+
+
+def model_levels(file: NetcdfFile, axis: Variable, data: Variable) -> ModelLevels:
+    """The levels along an axis that counts some kind of model level; `data` is what lies on them."""
     values = file.values(axis).ravel()
     middles = _coefficients(file, axis)
-    top_down = _top_down(*middles) if middles is not None else np.argsort(values if _points_down(axis) else -values)
-    ranks = [int(rank) + 1 for rank in np.argsort(top_down)]
-    own = _between_bounds(file, axis, top_down)
-    if own is not None:
-        return ranks, own
-    whole = bool(np.all(values == np.round(values)) and values.min() >= 1 and len(np.unique(values)) == len(values))
-    numbers = [int(value) for value in values] if whole and _points_down(axis) else ranks
-    given = _interfaces(file, axis, data)
-    if given is not None and (
-        max(numbers) < len(given[0]) if numbers is not ranks else len(given[0]) == len(ranks) + 1
+    if middles is not None:
+        top_down = _top_down(*middles)
+    else:
+        top_down = np.argsort(-values if axis.text("positive") == "up" else values)
+    in_order = values[top_down]
+    whole = bool((in_order == np.round(in_order)).all() and in_order[0] >= 1 and (np.diff(in_order) > 0).all())
+    numbers = tuple(int(number) for number in (values if whole else np.argsort(top_down) + 1))
+    for found in (
+        _between_bounds(file, axis, top_down),
+        _interfaces(file, axis, data),
+        None if middles is None else _made(*(part[top_down] for part in middles)),
     ):
-        return numbers, given
-    made = None if middles is None else _made(*(part[top_down] for part in middles))
-    return (ranks, made) if made is not None else (numbers, None)
-
-
-def _points_down(axis: Variable) -> bool:
-    return axis.text("positive") != "up"
+        if found is None or not _ends_at_ground(*found):
+            continue
+        last = len(found[0]) - 1
+        if max(numbers) <= last and (whole or len(numbers) == last):
+            return ModelLevels(numbers, found, not whole)
+    return ModelLevels(numbers, None, not whole)
 
 
 def _top_down(a: FloatArray, b: FloatArray) -> IntArray:
     return np.argsort(a + b * _SEA_LEVEL)
+
+
+def _ends_at_ground(a: FloatArray, b: FloatArray) -> bool:
+    return bool(abs(a[-1]) < _A_AT_GROUND and abs(b[-1] - 1) < _B_AT_GROUND)
 
 
 def _between_bounds(file: NetcdfFile, axis: Variable, top_down: IntArray) -> Halves | None:
@@ -91,7 +105,7 @@ def _interfaces(file: NetcdfFile, axis: Variable, data: Variable) -> Halves | No
 
 
 def _made(a: FloatArray, b: FloatArray) -> Halves | None:
-    """Half levels from those in the middle between them, from the top down; None if they do not end at the ground.
+    """Half levels from the levels in the middle between them, from the top down, where all levels are there.
 
     Each level's a and b are the means of its two half levels' (Simmons and Burridge 1981), and both are 0 at the top.
     """
@@ -102,8 +116,7 @@ def _made(a: FloatArray, b: FloatArray) -> Halves | None:
             edges.append(2 * float(middle) - edges[-1])
         halves.append(np.array(edges))
     pressures = halves[0] + halves[1] * _SEA_LEVEL
-    at_ground = abs(halves[0][-1]) < _A_AT_GROUND and abs(halves[1][-1] - 1) < _B_AT_GROUND
-    return (halves[0], halves[1]) if at_ground and (np.diff(pressures) > 0).all() else None
+    return (halves[0], halves[1]) if (np.diff(pressures) > 0).all() else None
 
 
 def _coefficients(file: NetcdfFile, variable: Variable) -> Halves | None:

@@ -181,8 +181,8 @@ def count_missing(sheets: Sequence[Sheet]) -> Count:
         values[sheet.quantity][1] += missing
         if missing:
             first.setdefault(sheet.quantity, sheet)
-    found = [Missing(quantity, *values[quantity], first.get(quantity)) for quantity in _COUNTED]
-    return Count(len(chosen), len(all_of_them), tuple(one for one in found if one.values), tuple(broken))
+    found = tuple(Missing(q, read, missing, first.get(q)) for q, (read, missing) in values.items() if read)
+    return Count(len(chosen), len(all_of_them), found, tuple(broken))
 
 
 def from_the_ground_up(levels: Sequence[Level]) -> tuple[Level, ...]:

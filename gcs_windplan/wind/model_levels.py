@@ -26,9 +26,9 @@ def heights_of_levels(
 ) -> dict[int, FloatArray]:
     """Heights above mean sea level [m] of the model levels, by number, 1 at the top.
 
-    `half_levels` a [Pa] and b (n + 1,) from the top down; `pressure` at the surface [Pa], `terrain` [m] and each level's
-    `temperature` [K] and specific `humidity` [kg/kg] (0 where there is none) have one shape. Counting begins at the
-    ground: raises `WindError` where the lowest level or one in between has no temperature.
+    `half_levels` a [Pa] and b (n + 1,) from the top down; `pressure` at the surface [Pa], `terrain` [m] and each
+    level's `temperature` [K] and specific `humidity` [kg/kg] (0 where there is none) have one shape. Counting begins
+    at the ground: raises `WindError` where the lowest level or one in between has no temperature.
     """
     a, b = half_levels
     bottom = len(a) - 1

@@ -1,234 +1,274 @@
-"""Wind from NetCDF files, classic and NetCDF4: ERA5, GFS, all that keeps u and v on latitudes and longitudes.
+"""Wind from NetCDF files, classic and NetCDF4: what CF files, ECMWF, NCEP, DWD, wgrib2, NetCDF-Java and WRF write.
 
-netCDF4 is imported here and nowhere else.
+netCDF4 is imported here and in `cf_time` alone.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from datetime import UTC, datetime
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import netCDF4
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.constants import STANDARD_GRAVITY
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import LocalFrame
-from gcs_windplan.wind import cf, selection
-from gcs_windplan.wind.field import Ground
-from gcs_windplan.wind.gridded import GriddedWind
-from gcs_windplan.wind.selection import Axes, Axis, Box, Wanted
+from gcs_windplan.wind.cf import Variable
+from gcs_windplan.wind.cf_axes import CLOCK, Role, role
+from gcs_windplan.wind.cf_names import WIND, Meaning, looks_like_wind, meaning
+from gcs_windplan.wind.netcdf_axes import Axes, Levels
+from gcs_windplan.wind.netcdf_file import NetcdfFile
+from gcs_windplan.wind.netcdf_grid import Layout, Layouts
+from gcs_windplan.wind.sheets import SURFACE, Catalogue, Level, Quantity, Sheet
+from gcs_windplan.wind.units import check_units, converted, unlogged
 
-_ENSEMBLES = ("number", "member", "realization", "ensemble", "ens")
-_ORDER: tuple[cf.AxisKind, ...] = ("time", *cf.LEVEL_KINDS, "latitude", "longitude")
-
-
-def read_netcdf(
-    path: Path | str,
-    frame: LocalFrame,
-    ground: Ground | None = None,
-    departure: datetime | None = None,
-    area: Box | None = None,
-    extend: bool = False,
-) -> GriddedWind:
-    """The wind in a NetCDF file.
-
-    `area` (west, south, east, north in the local frame [m]) is where it will be asked for: what lies more
-    than a cell outside of it is not read. `departure`, with its time zone, chooses the time in a file with
-    several; a file with one time is used at any time if no departure is told, and otherwise within three
-    hours of it. `ground` is needed for levels above the ground. `extend` takes the wind at the edge for
-    places outside of the grid.
-
-    Levels may be heights above the ground, altitudes, or pressures with a geopotential in the file, whose
-    heights are taken as above mean sea level. A file with one level or none gives the same wind at every
-    height. Where u and v have different levels the common ones are used. What was taken stands in the `name`.
-
-    Raises `WindError` for a file that cannot be read; u without v; unknown units or axes, projected grids,
-    ensembles; a departure that is missing or outside of the file's times; values missing inside the part that
-    is read.
-    """
-    if departure is not None and departure.tzinfo is None:
-        raise WindError(f"the departure {departure:%Y-%m-%d %H:%M} has no time zone: write it in UTC, ending in Z")
-    path = Path(path)
-    with _opened(path) as dataset:
-        return _Reader(dataset).wind(path.name, frame, ground, departure, area, extend)
+_ON_MODEL_LEVELS = ("temperature", "humidity")
+_FEW = 6  # variables that are named one by one
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[Any]:
-    """The open dataset; every error on the way names the file."""
-    if not path.is_file():
-        raise WindError(f"{path}: no such file")
+def open_netcdf(path: Path) -> Iterator[Catalogue]:
+    """The sheets of a NetCDF file, which can be read as long as it is open.
+
+    Raises `WindError`, here and in `Sheet.read`, that begins with the path: for a file that cannot be read; for wind
+    whose times, levels or units cannot be told, if there is no other in the file. What else cannot be used stands in
+    `Catalogue.unused`.
+    """
     try:
-        with netCDF4.Dataset(path) as dataset:
-            yield dataset
-    except WindError as error:
-        raise WindError(f"{path}: {error}") from error
+        dataset = netCDF4.Dataset(path)
     except (OSError, RuntimeError) as error:
         raise WindError(f"{path}: cannot be read as NetCDF ({error})") from error
+    try:
+        yield _Reader(path, NetcdfFile(dataset)).catalogue()
+    finally:
+        dataset.close()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Source:
+    """A variable, what it holds, and where.
+
+    `column` is the variable at one node, for which times and levels are asked: there are fields of times, of the
+    strongest gust. `version` is ERA5's dimension `expver`.
+    """
+
+    variable: Variable
+    column: Variable
+    meaning: Meaning
+    quantity: Quantity
+    layout: Layout
+    version: str | None
 
 
 class _Reader:
-    """An open dataset and what it says about its variables."""
+    """An open file on its way to a catalogue."""
 
-    def __init__(self, dataset: Any) -> None:
-        self.dataset = dataset
-        self.file: dict[str, cf.Variable] = {
-            name: cf.Variable(name, v.dimensions, v.shape, {a: v.getncattr(a) for a in v.ncattrs()})
-            for name, v in dataset.variables.items()
+    def __init__(self, path: Path, file: NetcdfFile) -> None:
+        self._path = path
+        self._file = file
+        self._axes = Axes(file)
+        self._layouts = Layouts(self._axes)
+        self._passed_over: dict[str, list[str]] = {}
+        self._broken = False
+
+    def catalogue(self) -> Catalogue:
+        """All sheets. Raises `WindError` where times, levels or units of wind cannot be told and no wind is left."""
+        with self._telling("it"):
+            sheets = [sheet for variable in self._file.variables.values() for sheet in self._sheets_of(variable)]
+            sheets = self._on_one_grid(sheets)
+            if self._file.groups:
+                self._pass_over(", ".join(self._file.groups), "groups are not read: lift them with `ncks -G :`")
+            unused = tuple(_said(names, reason) for reason, names in self._passed_over.items())
+            if self._broken and not any(sheet.quantity in ("u", "v", "speed") for sheet in sheets):
+                raise WindError("; ".join(unused))
+        return Catalogue(self._path.name, tuple(sheets), self._file.title, unused)
+
+    def _sheets_of(self, variable: Variable) -> list[Sheet]:
+        """The sheets of a variable; none where it is no wind, or cannot be used, which is noted."""
+        if not self._file.is_numeric(variable) or variable.dimensions == (variable.name,):
+            return []
+        found = meaning(variable)
+        if found is None:
+            if looks_like_wind(variable) and len(variable.dimensions) > 1:
+                self._pass_over(variable.name, "by name or attributes no wind at a height, or a statistic of it")
+            return []
+        if any(self._role(variable, dimension) == "depth" for dimension in variable.dimensions):
+            return []
+        is_wind = found.quantity in WIND
+        try:
+            source = self._source(variable, found)
+            try:
+                return list(self._sheets(source))
+            except WindError:
+                self._broken = self._broken or is_wind
+                raise
+        except WindError as error:
+            if is_wind or len(variable.dimensions) > 1:
+                self._pass_over(variable.name, str(error))
+            return []
+
+    def _pass_over(self, name: str, reason: str) -> None:
+        self._passed_over.setdefault(reason, []).append(name)
+
+    def _source(self, variable: Variable, found: Meaning) -> _Source:
+        """Where a variable's values stand. Raises `WindError` for other grids, and axes that are not known."""
+        if 0 in variable.shape:
+            raise WindError("it is empty: nothing was written into it")
+        if found.quantity not in WIND:  # which say so when they are read: the rest can be done without
+            check_units(variable.name, variable.told("units"), found.quantity, found.logarithm)
+        layout = self._layouts.of(variable)
+        free = tuple(d for d in variable.dimensions if d not in (layout.rows, layout.columns))
+        column = replace(variable, dimensions=free, shape=tuple(self._file.dimensions[d] for d in free))
+        version = next((d for d in free if self._role(column, d) == "version"), None)
+        self._check_axes(column)
+        return _Source(variable, column, found, found.quantity, layout, version)
+
+    def _check_axes(self, column: Variable) -> None:
+        """Raise `WindError` for axes that are not known."""
+        timed = {d for time in self._axes.beside(column, *CLOCK) for d in time.dimensions} | {"Time"}  # WRF's
+        for dimension, size in zip(column.dimensions, column.shape, strict=True):
+            if size > 1 and dimension not in timed and self._role(column, dimension) is None:
+                raise WindError(
+                    f"an axis {dimension} of {size} values counts nothing that is known: set the `units` (hPa, m) or"
+                    " the `standard_name` (air_pressure, height, altitude, realization) of its coordinate"
+                )
+
+    def _role(self, variable: Variable, dimension: str) -> Role | None:
+        """What a dimension counts; members and versions need no numbers to be known."""
+        axis = self._axes.along(variable, dimension)
+        if axis is not None:
+            return self._axes.role(axis)
+        named = role(self._file.variables.get(dimension, Variable(dimension, (dimension,), (1,), {})))
+        return named if named in ("member", "version") else None
+
+    def _sheets(self, source: _Source) -> Iterator[Sheet]:
+        """The sheets of a variable. Raises `WindError` for times and levels that cannot be told."""
+        variable, column = source.variable, source.column
+        levels = self._axes.levels(column, source.meaning)
+        quantity = _at(levels, source.quantity)
+        if quantity is None:
+            return
+        time, run = self._axes.times(column, source.meaning)
+        members = self._members(column)
+        made = partial(
+            Sheet,
+            quantity=quantity,
+            grid=source.layout.grid,
+            name=variable.name,
+            units=variable.told("units"),
+            along_grid=self._along_grid(source),
+            half_levels=levels.half_levels,
+        )
+        source = replace(source, quantity=quantity)
+        free = [d for d in column.dimensions if d != source.version]
+        for numbers in np.ndindex(*(self._file.dimensions[d] for d in free)):
+            place = dict(zip(free, numbers, strict=True))
+            level = levels.levels[place[levels.dimension] if levels.dimension else 0]
+            yield made(
+                level=SURFACE if quantity == "terrain" else level,
+                read=partial(self._read, source, place),
+                time=None if time is None else time.at(place),
+                run=None if run is None else run.at(place),
+                member=None if members is None else members[1][place[members[0]]],
+            )
+
+    def _members(self, variable: Variable) -> tuple[str, list[int]] | None:
+        """The dimension of an ensemble and its members; one member is none."""
+        for dimension in variable.dimensions:
+            size = self._file.dimensions[dimension]
+            if size > 1 and self._role(variable, dimension) == "member":
+                axis = self._axes.along(variable, dimension)
+                values = np.arange(size) if axis is None else self._file.values(axis)
+                known = bool((np.abs(values) < 2**31).all()) and len(np.unique(values.astype(np.int64))) == size
+                return dimension, [int(value) for value in (values if known else np.arange(size))]
+        return None
+
+    def _along_grid(self, source: _Source) -> bool:
+        """Whether u or v follow the grid: on grids of their own kind weather models write them so by custom."""
+        if source.quantity not in ("u", "v") or source.layout.grid.regular:
+            return False
+        told = source.meaning.along_grid
+        if told is None and "south_north" not in source.variable.dimensions:  # WRF is known for it
+            self._pass_over(
+                source.variable.name,
+                "used as following the grid, not true north, as most models write it, for the file does not tell: if"
+                " that is wrong, set the `standard_name` to eastward_wind and northward_wind",
+            )
+        return True if told is None else told
+
+    def _on_one_grid(self, sheets: list[Sheet]) -> list[Sheet]:
+        """Without u and v of levels where they share no grid: those stand on the sides of their cells."""
+        grids: dict[tuple[str, Level], set[object]] = defaultdict(set)
+        for sheet in sheets:
+            grids[sheet.quantity, sheet.level].add(sheet.grid.key)
+        apart = {
+            level
+            for quantity, level in grids
+            if quantity == "u" and ("v", level) in grids and not grids["u", level] & grids["v", level]
         }
+        torn = {s.name for s in sheets if s.quantity in ("u", "v") and s.level in apart}
+        for name in sorted(torn):
+            self._pass_over(name, "u and v stand at different places, on a staggered grid: bring them to one first")
+        return [s for s in sheets if not (s.quantity in ("u", "v") and s.level in apart)]
 
-    def wind(
-        self,
-        name: str,
-        frame: LocalFrame,
-        ground: Ground | None,
-        departure: datetime | None,
-        area: Box | None,
-        extend: bool,
-    ) -> GriddedWind:
-        u, v = cf.find_winds(self.file)
-        axes = {variable.name: self.axes(variable) for variable in (u, v)}
-        u_axes, v_axes = axes[u.name], axes[v.name]
-        wanted = selection.horizontal(u_axes, frame, area, extend)
-        times = selection.choose_times(self.all_times(u_axes), departure)
-        if "time" in u_axes:
-            wanted["time"] = times.values
-        kind = selection.level_kind(u_axes, v_axes)
-        if kind is not None:
-            wanted[kind] = selection.common_levels(kind, u_axes[kind].values, v_axes[kind].values)
-        levels = np.zeros(1) if kind is None else wanted[kind]
-        over_ground = kind == "height" and len(levels) > 1
-        if over_ground and ground is None:
-            raise WindError("its levels are heights above the ground: it can only be used with a terrain")
-        title = str(getattr(self.dataset, "title", "")).strip()[:80]
-        source = f"{name} ({title})" if title else name
-        said = selection.say_levels(kind, levels, u_axes, v_axes)
-        return GriddedWind(
-            name=f"{source}: {u.name}, {v.name}, {said}, {times.note}{', extended' if extend else ''}",
-            frame=frame,
-            latitudes=wanted["latitude"],
-            longitudes=selection.continuous(wanted["longitude"], frame),
-            heights=self.heights(kind, levels, wanted, u_axes),
-            times=times.values - times.zero,
-            u=self.values(u, u_axes, wanted) * cf.speed_unit(u),
-            v=self.values(v, v_axes, wanted) * cf.speed_unit(v),
-            ground=ground if over_ground else None,
-            window=times.window,
-            extend=extend,
+    def _read(self, source: _Source, place: dict[str, int], rows: IntArray, columns: IntArray) -> FloatArray:
+        """The values of a sheet in the unit of its quantity."""
+        variable, held, units = source.variable, source.quantity, source.variable.told("units")
+        with self._telling(variable.name):
+            values = self._plane(source, place, rows, columns)
+            if source.meaning.logarithm:
+                return unlogged(values, variable.name)
+            values = converted(values, held, variable.name, units)
+        if held == "direction":
+            values = np.mod(values + (180.0 if source.meaning.towards else 0.0), 360.0)
+        return values
+
+    def _plane(self, source: _Source, place: dict[str, int], rows: IntArray, columns: IntArray) -> FloatArray:
+        """The values as they stand in the file; of ERA5's versions the first that has any."""
+        variable, layout = source.variable, source.layout
+        across = (
+            None if layout.rows is None else (layout.rows, rows),
+            None if layout.columns is None else (layout.columns, columns),
         )
+        if source.version is None:
+            return self._file.plane(variable, place, *across)
+        size = self._file.dimensions[source.version]
+        axis = self._axes.along(variable, source.version)
+        order = np.arange(size) if axis is None else np.argsort(self._file.values(axis))
+        planes = [self._file.plane(variable, {**place, source.version: int(one)}, *across) for one in order]
+        first = planes[0]
+        for other in planes[1:]:
+            first = np.where(np.isfinite(first), first, other)
+        return first
 
-    def axes(self, variable: cf.Variable) -> Axes:
-        """The axes of a variable by what they count, without dimensions of length 1 that count nothing."""
-        axes: Axes = {}
-        unknown = []
-        for dimension, size in zip(variable.dimensions, variable.shape, strict=True):
-            found = cf.coordinate_of(self.file, dimension)
-            if found is not None and found[0] not in axes:
-                axes[found[0]] = Axis(dimension, self.coordinate(*found))
-            elif size > 1:
-                unknown.append((dimension, size))
-        if not {"latitude", "longitude"} <= set(axes):
+    @contextmanager
+    def _telling(self, what: str) -> Iterator[None]:
+        """Every error on the way begins with the path."""
+        try:
+            yield
+        except WindError as error:
+            raise WindError(f"{self._path}: {error}") from error
+        except (OSError, RuntimeError) as error:
             raise WindError(
-                f"{variable.name} ({', '.join(variable.dimensions)}) has no latitude and longitude axis: "
-                "other grids are not read; regrid it first, for example with `cdo remapbil`"
-            )
-        if unknown:
-            raise WindError(_unknown_axis(variable, *unknown[0]))
-        return axes
-
-    def coordinate(self, kind: cf.AxisKind, variable: cf.Variable) -> FloatArray:
-        """The values of a coordinate (n,) in degrees, UTC seconds since 1970, metres or pascals."""
-        values = _plain(self.dataset.variables[variable.name][...]).ravel()
-        if not np.isfinite(values).all():
-            raise WindError(f"its coordinate {variable.name} has missing values")
-        return _decoded(variable, values) if kind == "time" else values * cf.axis_unit(variable, kind)
-
-    def all_times(self, axes: Axes) -> FloatArray:
-        """Every time of the file (n,) [s since 1970, UTC], empty where it knows none."""
-        if "time" in axes:
-            return axes["time"].values
-        scalar = cf.scalar_time(self.file)
-        return np.empty(0) if scalar is None else self.coordinate("time", scalar)
-
-    def heights(self, kind: cf.AxisKind | None, levels: FloatArray, wanted: Wanted, u: Axes) -> FloatArray:
-        """Heights of the levels [m]: (levels,), or (time, level, latitude, longitude) on pressure levels."""
-        if kind != "pressure" or len(levels) == 1:
-            return levels if len(levels) > 1 else np.zeros(1)
-        variable = cf.find_geopotential(self.file, u[kind].dimension)
-        if variable is None:
-            raise WindError(
-                "its levels are pressures and it has no geopotential (z or gh) on them, so that their "
-                "heights are unknown: download it along with u and v"
-            )
-        if cf.is_geopotential(variable):
-            return self.values(variable, self.axes(variable), wanted) / STANDARD_GRAVITY
-        return self.values(variable, self.axes(variable), wanted) * cf.axis_unit(variable, "altitude")
-
-    def values(self, variable: cf.Variable, axes: Axes, wanted: Wanted) -> FloatArray:
-        """The wanted part of a variable: (time, level, latitude, longitude), in its own unit."""
-        for kind in wanted:
-            if kind not in axes:
-                raise WindError(f"{variable.name} has no {kind} axis")
-        for kind, axis in axes.items():
-            if kind not in wanted and len(axis.values) > 1:
-                raise WindError(f"{variable.name} has a {kind} axis that the wind has not")
-        ordered = [kind for kind in _ORDER if kind in wanted]
-        places = {kind: selection.positions(axes[kind].values, wanted[kind], kind) for kind in ordered}
-        array = self.block(variable, {axes[kind].dimension: places[kind] for kind in ordered})
-        _check_complete(variable.name, array, [(kind, wanted[kind]) for kind in ordered])
-        levels = [len(wanted[kind]) for kind in cf.LEVEL_KINDS if kind in wanted] or [1]
-        return array.reshape(len(wanted.get("time", [0])), *levels, *array.shape[-2:])
-
-    def block(self, variable: cf.Variable, places: dict[str, IntArray]) -> FloatArray:
-        """The values at `places` along each named dimension, in that order; at 0 along the others.
-
-        Reads the smallest block that holds them, which is far faster than to let the library pick one by one.
-        """
-        index = tuple(slice(places[d].min(), places[d].max() + 1) if d in places else 0 for d in variable.dimensions)
-        block = _plain(self.dataset.variables[variable.name][index])
-        present = [d for d in variable.dimensions if d in places]
-        block = block.transpose([present.index(d) for d in places])
-        return block[np.ix_(*(place - place.min() for place in places.values()))]
+                f"{self._path}: {what} cannot be read ({error}): it is damaged, or packed in an unknown way"
+            ) from error
 
 
-def _plain(values: Any) -> FloatArray:
-    """What netCDF4 read, NaN where it masked."""
-    array: FloatArray = np.array(np.ma.getdata(values), dtype=np.float64)
-    array[np.ma.getmaskarray(values)] = np.nan
-    return array
+def _at(levels: Levels, quantity: Quantity) -> Quantity | None:
+    """What a quantity is on such levels: a geopotential on none is the terrain's; None if it is of no use there."""
+    kind = levels.levels[0].kind
+    if quantity == "height" and levels.dimension is None and kind in ("unknown", "surface"):
+        return "terrain"
+    return None if quantity in _ON_MODEL_LEVELS and kind != "model" else quantity
 
 
-def _decoded(variable: cf.Variable, values: FloatArray) -> FloatArray:
-    """UTC seconds since 1970 of the values of a time axis."""
-    units, calendar = str(variable.attributes["units"]), str(variable.attributes.get("calendar", "standard"))
-    try:
-        moments: Any = netCDF4.num2date(
-            values, units, calendar, only_use_cftime_datetimes=False, only_use_python_datetimes=True
-        )
-    except (ValueError, OverflowError) as error:
-        raise WindError(f"its times {variable.name} ({units}, {calendar}) cannot be read: {error}") from error
-    return np.array([moment.replace(tzinfo=UTC).timestamp() for moment in np.atleast_1d(moments)])
-
-
-def _check_complete(name: str, values: FloatArray, axes: list[tuple[cf.AxisKind, FloatArray]]) -> None:
-    """Raises `WindError` that tells the first place where a value is missing."""
-    missing = np.argwhere(~np.isfinite(values))
-    if not len(missing):
-        return
-    place = ", ".join(selection.say(kind, axis[index]) for (kind, axis), index in zip(axes, missing[0], strict=True))
-    count = f"{len(missing)} of {values.size} values"
-    raise WindError(f"{name} misses {count}, the first at {place}: fill them or cut them off")
-
-
-def _unknown_axis(variable: cf.Variable, dimension: str, size: int) -> str:
-    if dimension.lower() in _ENSEMBLES:
-        return f"{variable.name} has {size} members along {dimension}: keep one of them in the file"
-    return (
-        f"{variable.name} has an axis {dimension} of {size} values that is not known as latitude, longitude, "
-        "time, height above ground, altitude or pressure (model levels and projected grids cannot be placed)"
-    )
+def _said(names: list[str], reason: str) -> str:
+    """Which variables were passed over and why."""
+    if reason.startswith(f"{names[0]} "):
+        return reason
+    more = f" and {len(names) - _FEW} more" if len(names) > _FEW else ""
+    return f"{', '.join(names[:_FEW])}{more}: {reason}"

@@ -39,6 +39,7 @@ class Axes:
         self._roles: dict[str, Role] = {name: counted for name, counted in found.items() if counted is not None}
         self._coordinates: dict[tuple[str, str], Variable | None] = {}
         self._decoded: dict[str, Coordinate] = {}
+        self._counted: Variable | None = None
 
     def role(self, variable: Variable) -> Role | None:
         """What a coordinate counts."""
@@ -160,9 +161,20 @@ class Axes:
     def _along(self, axis: Variable, variable: Variable) -> Levels:
         kind = _level_kind(self.role(axis))
         if kind == "model":
-            numbers, halves = model_levels(self.file, axis, variable)
-            return Levels(axis.dimensions[0], tuple(Level(kind, float(number)) for number in numbers), halves)
+            found = model_levels(self.file, axis, variable)
+            self._check_counted(axis, found.counted)
+            numbers = tuple(Level(kind, float(number)) for number in found.numbers)
+            return Levels(axis.dimensions[0], numbers, found.half_levels)
         return Levels(axis.dimensions[0], tuple(_rounded(kind, value) for value in self._in_si(axis, kind)))
+
+    def _check_counted(self, axis: Variable, counted: bool) -> None:
+        """Raise `WindError` if levels that are only counted could be taken for others."""
+        first = self._counted = self._counted or (axis if counted else None)
+        if counted and first is not None and not np.array_equal(self.file.values(axis), self.file.values(first)):
+            raise WindError(
+                f"its model levels {axis.name} are others than {first.name}, and neither has numbers: bring all to one"
+                " axis, or number them from 1 at the top"
+            )
 
     def _in_si(self, axis: Variable, kind: LevelKind) -> FloatArray:
         unit = unit_of(axis.name, axis.told("units"), PRESSURE if kind == "pressure" else LENGTH)

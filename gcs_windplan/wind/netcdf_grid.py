@@ -31,6 +31,7 @@ class Layouts:
     def __init__(self, axes: Axes) -> None:
         self._axes = axes
         self._file = axes.file
+        self._regulars: dict[tuple[str, str], Grid] = {}
         self._known: dict[tuple[str, ...], Layout] = {}
 
     def of(self, variable: Variable) -> Layout:
@@ -73,16 +74,12 @@ class Layouts:
 
     def _laid_out(self, variable: Variable, rows: Variable, columns: Variable) -> Layout:
         key = (rows.name, columns.name)
-        if key not in self._known:
+        if key not in self._regulars:
             latitudes, longitudes = (self._degrees(v).ravel() for v in (rows, columns))
             name = f"{len(latitudes)} latitudes x {len(longitudes)} longitudes"
-            grid = Grid(latitudes, longitudes, name)
-            dimensions = [
-                v.dimensions[0] if set(v.dimensions) <= set(variable.dimensions) and v.dimensions else None
-                for v in (rows, columns)
-            ]
-            self._known[key] = Layout(grid, *dimensions)
-        return self._known[key]
+            self._regulars[key] = Grid(latitudes, longitudes, name)
+        along = (next((d for d in v.dimensions if d in variable.dimensions), None) for v in (rows, columns))
+        return Layout(self._regulars[key], *along)
 
     def _meshes(self, variable: Variable, role: Role) -> list[Variable]:
         """Latitudes or longitudes of each node; WRF repeats them for every time, which a terrain may lack."""

@@ -129,11 +129,13 @@ def nothing_found(catalogues: Sequence[Catalogue]) -> str:
         if have[first] and not have[second]:
             return f"it has {first} ({named[first]}) but no {second}" + (f"; {unused}" if unused else "")
     if (have["u"] and have["v"]) or (have["speed"] and have["direction"]):
-        us, vs = (sorted({str(s.level) for s in sheets if s.quantity in q}) for q in (("u", "speed"), ("v", "direction")))
+        us, vs = (
+            sorted({str(s.level) for s in sheets if s.quantity in q}) for q in (("u", "speed"), ("v", "direction"))
+        )
         return f"u and v share no level, time and member: u has {_few(us)}, v has {_few(vs)}"
     names = _few(sorted({sheet.name for sheet in sheets if sheet.name}))
-    return "it holds no wind that can be used" + (f"; it has {names}" if names else "") + (
-        f"; {unused}" if unused else ""
+    return (
+        "it holds no wind that can be used" + (f"; it has {names}" if names else "") + (f"; {unused}" if unused else "")
     )
 
 

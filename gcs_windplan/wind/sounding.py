@@ -183,14 +183,11 @@ def _unblown(excerpt: Excerpt, here: Here, altitude: Altitude) -> Spot:
 
 
 def _without_ground(excerpt: Excerpt, altitude: Altitude) -> str:
+    advice = "write the height above mean sea level, without `agl`"
     if not excerpt.winds.above:
-        return (
-            f"it has no terrain, so that {altitude} cannot be told: write the height above mean sea level, without `agl`"
-        )
-    return (
-        f"{altitude} is above its highest level above ground, {excerpt.winds.above[-1]}"
-        + (", and it has no terrain: write the height above mean sea level, without `agl`" * bool(excerpt.winds.beyond))
-    )  # fmt: skip
+        return f"it has no terrain, so that {altitude} cannot be told: {advice}"
+    reason = f"{altitude} is above its highest level above ground, {excerpt.winds.above[-1]}"
+    return f"{reason}, and it has no terrain: {advice}" if excerpt.winds.beyond else reason
 
 
 def _ladder(excerpt: Excerpt, ground: float, over_ground: bool) -> list[tuple[float, Level]]:

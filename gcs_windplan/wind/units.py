@@ -131,10 +131,16 @@ def compact(units: str) -> str:
     return re.sub(r"[\s*^._{}()]", "", units.lower().translate(_SUPERSCRIPTS))
 
 
-def unlogged(values: FloatArray, name: str, units: str) -> FloatArray:
-    """Pressures [Pa] of their natural logarithms, which have no unit. Raises `WindError` if they cannot be those."""
-    if compact(units) not in {"", "~", "1", "-", "numeric", "dimensionless", "none", "lnpa", "logpa"}:
+def check_units(name: str, units: str, quantity: Quantity, logarithm: bool = False) -> None:
+    """Raise `WindError` if values in such units cannot be turned into those of a quantity."""
+    if not logarithm:
+        unit_of(name, units, OF[quantity])
+    elif compact(units) not in {"", "~", "1", "-", "numeric", "dimensionless", "none", "lnpa", "logpa"}:
         raise WindError(f"{name} is in {units!r}, but the logarithm of a pressure has no unit: set `units` to 1")
+
+
+def unlogged(values: FloatArray, name: str) -> FloatArray:
+    """Pressures [Pa] of their natural logarithms. Raises `WindError` if they cannot be those."""
     if (values > _LOG_OF_ANY_PRESSURE).any():
         raise WindError(f"{name} goes up to {np.nanmax(values):g}, which is the logarithm of no pressure")
     pressures: FloatArray = np.exp(values)

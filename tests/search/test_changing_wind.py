@@ -129,7 +129,7 @@ def test_every_cost_finds_a_way_that_can_be_flown(name):
 @pytest.mark.parametrize(("changes_in", "tolerance"), [(3 * 3600.0, 0.05), (900.0, 0.3)], ids=["forecast", "wild"])
 @pytest.mark.parametrize("seed", range(5))
 def test_legs_last_as_long_as_integrating_their_speed_says(seed, changes_in, tolerance):
-    """In a forecast's three hours and, beyond what any forecast does, in a quarter of an hour; tolerances in seconds."""
+    """In a forecast's three hours and, wilder than any, in a quarter of an hour; tolerances in seconds."""
     random = np.random.default_rng(seed)
     wind, vehicle = ShiftingWind((seed, seed + 1), (0.0, changes_in), strength=4.0), Vehicle(12.0, climb=3.0)
     points = np.cumsum(np.vstack([np.zeros(3), random.uniform(-600, 600, (4, 3)) * (1, 1, 0.1)]), axis=0)

@@ -10,7 +10,7 @@ import netCDF4
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.wind.netcdf_sheets import open_netcdf
+from gcs_windplan.wind.netcdf import open_netcdf
 from gcs_windplan.wind.sheets import Catalogue, Sheet
 
 #: Dimensions separated by blanks, values, attributes.
@@ -24,7 +24,7 @@ HOURS = "hours since 2026-05-01 12:00:00"
 NOON = 1777636800.0  # 2026-05-01 12:00 UTC
 
 
-def write_netcdf(path: Path, variables: Mapping[str, Content], format: str = "NETCDF4", **attributes: Any) -> Path:
+def write_netcdf(path: Path, variables: Mapping[str, Content], format: Any = "NETCDF4", **attributes: Any) -> Path:
     """A file of variables, whose dimensions have the lengths of their values."""
     with netCDF4.Dataset(path, "w", format=format) as file:
         file.setncatts(attributes)
@@ -42,7 +42,7 @@ def write_netcdf(path: Path, variables: Mapping[str, Content], format: str = "NE
     return path
 
 
-def wind(dimensions: str, *shape: int, value: float = 10.0, **attributes: Any) -> Content:
+def wind(dimensions: str, *shape: int, value: Any = 10.0, **attributes: Any) -> Content:
     """A variable that holds `value` everywhere, in m/s if nothing else is said."""
     return dimensions, np.full(shape, value), {**MS, **attributes}
 

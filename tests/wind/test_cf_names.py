@@ -73,6 +73,7 @@ def test_standard_names_go_first(standard_name: str, quantity: str | None) -> No
         ("u_850hPa", {}, Level("pressure", 85000), None),
         ("u", {"level": "10 m above ground"}, Level("height", 10), None),
         ("u", {"level": "925 mb"}, Level("pressure", 92500), None),
+        ("u", {"level": "1.2.3 mb"}, None, None),
         ("gust", {"level": "surface"}, SURFACE, None),
         ("u100", {}, None, Level("height", 100)),
         ("100u", {}, None, Level("height", 100)),

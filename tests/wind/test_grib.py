@@ -465,10 +465,10 @@ def test_flags_that_edition_1_reserves_mean_nothing(opened: Opened) -> None:
 
 @given(scanning=st.sampled_from(range(0, 256, 16)), rows=st.integers(1, 6), columns=st.integers(1, 6))
 def test_putting_values_in_order_undoes_how_they_are_stored(scanning: int, rows: int, columns: int) -> None:
-    from gcs_windplan.wind.grib import _in_order
+    from gcs_windplan.wind.grib_grid import in_order
 
     values = np.arange(rows * columns, dtype=np.float64).reshape(rows, columns)
-    np.testing.assert_array_equal(_in_order(stored(values, scanning), (rows, columns), scanning), values)
+    np.testing.assert_array_equal(in_order(stored(values, scanning), (rows, columns), scanning), values)
 
 
 #: eccodes has no key `uvRelativeToGrid` in edition 2 on polar stereographic and equal-area grids.
@@ -939,7 +939,7 @@ def test_more_values_than_nodes_are_an_error_before_there_is_room_made_for_them(
     sections[5] = sections[5][:5] + b"\x90" + sections[5][6:]
     path = tmp_path / "wind.grib"
     path.write_bytes(field[:16] + b"".join(sections[n] for n in sorted(sections)) + b"7777")
-    with open_grib(path) as catalogue, pytest.raises(WindError, match="is not as long as its grid"):
+    with open_grib(path) as catalogue, pytest.raises(WindError, match="not as many as its grid"):
         _whole(_only(catalogue))
 
 

@@ -141,6 +141,45 @@ def test_numbers_count_from_the_top(path: Path, values: list[float], said: dict[
     assert _levels(path, {"lev": _lev(values, **said), "u": U4}) == (numbers, None)
 
 
+def test_numbers_that_go_the_wrong_way_are_counted_anew(path: Path) -> None:
+    """a and b show that level 1 is at the ground."""
+    content = {
+        "lev": _lev([1, 2, 3, 4], formula_terms="ap: ap b: b"),
+        "ap": ("lev", MID_A[::-1], PA),
+        "b": ("lev", MID_B[::-1], ONE),
+        "u": U4,
+    }
+    numbers, halves = _levels(path, content)
+    assert numbers == [4, 3, 2, 1]
+    _check(halves)
+
+
+def test_bounds_of_a_part_are_no_half_levels_of_all(path: Path) -> None:
+    for part, values in ((slice(2, 4), [3, 4]), (slice(0, 2), [1, 2])):
+        content = {
+            "lev": _lev(values, bounds="lev_bnds", formula_terms="ap: ap b: b"),
+            "lev_bnds": ("lev two", np.zeros((2, 2)), {"formula_terms": "ap: ap_bnds b: b_bnds"}),
+            "ap": ("lev", MID_A[part], PA),
+            "b": ("lev", MID_B[part], ONE),
+            "ap_bnds": ("lev two", np.stack([A[:-1], A[1:]], axis=1)[part], PA),
+            "b_bnds": ("lev two", np.stack([B[:-1], B[1:]], axis=1)[part], ONE),
+            "u": wind("lev lat lon", 2, 3, 4),
+        }
+        assert _levels(path, content) == (values, None)
+
+
+def test_levels_that_are_only_counted_are_not_mixed_up_with_others(path: Path) -> None:
+    content = {
+        "lev": _lev([0.7, 0.9]),
+        "lev_2": ("lev_2", [0.3, 0.7, 0.9], HYBRID),
+        "u": wind("lev lat lon", 2, 3, 4),
+        "t": wind("lev_2 lat lon", 3, 3, 4, units="K"),
+    }
+    catalogue, sheets = everything(write_netcdf(path, {**AXES, **content}))
+    assert {sheet.name for sheet, _ in sheets} == {"u"}
+    assert catalogue.unused[0].startswith("t: its model levels lev_2 are others than lev, and neither has numbers")
+
+
 def test_coefficients_of_unknown_units_are_none(path: Path) -> None:
     content = {"lev": _lev([1, 2, 3, 4]), "hyai": ("nhyi", A, {}), "hybi": ("nhyi", B, ONE), "u": U4}
     assert _levels(path, content)[1] is None

@@ -71,6 +71,16 @@ def test_a_slice_along_one_meridian_is_a_grid_of_one_column(path: Path) -> None:
     assert (grid.shape, grid.longitudes.tolist()) == ((3, 1), [7.0])
 
 
+def test_variables_with_and_without_dimensions_of_one_share_a_grid(path: Path) -> None:
+    content = {
+        "lat": ("lat", [50.0], LAT[2]), "lon": ("lon", [7.0], LON[2]),
+        "u10": wind("lat lon", 1, 1), "v10": wind("lon", 1, value=3.0), "z": ("", 5.0, {"units": "m"}),
+    }  # fmt: skip
+    _, sheets = everything(write_netcdf(path, content))
+    assert len({id(sheet.grid) for sheet, _ in sheets}) == 1
+    assert [values.tolist() for _, values in sheets] == [[[10.0]], [[3.0]], [[5.0]]]
+
+
 @pytest.mark.parametrize("said", [{"coordinates": "nav_lon nav_lat"}, {}])
 def test_nodes_with_their_own_latitudes_and_longitudes(path: Path, said: dict[str, str]) -> None:
     content = {
@@ -182,7 +192,7 @@ def test_a_projection_helps_out_where_nodes_are_missing(path: Path) -> None:
 
 
 def test_a_rotated_grid_has_latitudes_and_longitudes_of_its_own(path: Path) -> None:
-    pole = {"grid_north_pole_latitude": 40.0, "grid_north_pole_longitude": -170.0}
+    pole: dict[str, Any] = {"grid_north_pole_latitude": 40.0, "grid_north_pole_longitude": -170.0}
     content = {
         "rlat": ("rlat", [-1.0, 0.0, 1.0], {"standard_name": "grid_latitude", "units": "degrees"}),
         "rlon": ("rlon", [-1.0, 0.0, 1.0, 2.0], {"standard_name": "grid_longitude", "units": "degrees"}),

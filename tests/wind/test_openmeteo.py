@@ -82,7 +82,7 @@ def test_a_real_answer_holds_what_a_naive_reading_of_it_gives() -> None:
     if not REAL.exists():
         pytest.skip("the shared test data are missing")
     answer, random = json.loads(REAL.read_text()), np.random.default_rng(12)
-    names = {
+    names: dict[Quantity, tuple[str, float]] = {
         "speed": ("windspeed_{}hPa", STATUTE_MILE / 3600),
         "direction": ("winddirection_{}hPa", 1.0),
         "height": ("geopotential_height_{}hPa", 1.0),
@@ -99,7 +99,8 @@ def test_a_real_answer_holds_what_a_naive_reading_of_it_gives() -> None:
                 expected = answer["hourly"][name.format(pressure)][hour] * factor
                 assert float(sheet.read(ZERO, ZERO)[0, 0]) == pytest.approx(expected, abs=ONE_CM_PER_SECOND)
         first = datetime(2025, 9, 11, 18, tzinfo=UTC).timestamp()
-        ten = {q: float(sheets[q, TEN, first].read(ZERO, ZERO)[0, 0]) for q in ("speed", "direction", "gust")}
+        kinds: tuple[Quantity, ...] = ("speed", "direction", "gust")
+        ten = {q: float(sheets[q, TEN, first].read(ZERO, ZERO)[0, 0]) for q in kinds}
         assert ten == pytest.approx({"speed": 13.0 * 0.44704, "direction": 191.0, "gust": 23.5 * 0.44704})
         assert float(sheets["terrain", SURFACE, None].read(ZERO, ZERO)[0, 0]) == 1288.0
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.cf import Variable
-from gcs_windplan.wind.netcdf_sheets import open_netcdf
+from gcs_windplan.wind.netcdf import open_netcdf
 from gcs_windplan.wind.projection import unprojected
 
 NDFD = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "wind" / "ndfd_20170603T1800.nc"

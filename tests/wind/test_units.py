@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.sheets import Quantity
-from gcs_windplan.wind.units import OF, Measure, compact, converted, is_something_else, unit_of, unlogged
+from gcs_windplan.wind.units import OF, Measure, check_units, compact, converted, is_something_else, unit_of, unlogged
 
 QUANTITIES = sorted(OF)
 
@@ -54,9 +54,14 @@ def test_case_and_blanks_do_not_matter(quantity: Quantity, data: st.DataObject) 
     assert unit_of("x", f" {units.upper()} ", measure) == measure.sizes[units]
 
 
+@pytest.mark.parametrize(("units", "quantity", "logarithm"), [("m", "height", False), ("~", "pressure", True)])
+def test_units_that_fit_raise_nothing(units: str, quantity: Quantity, logarithm: bool) -> None:
+    check_units("x", units, quantity, logarithm)
+
+
 @given(st.floats(1e3, 1.1e5))
 def test_the_logarithm_of_a_pressure_is_undone(pressure: float) -> None:
-    assert unlogged(np.log([pressure]), "lnsp", "~")[0] == pytest.approx(pressure)
+    assert unlogged(np.log([pressure]), "lnsp")[0] == pytest.approx(pressure)
 
 
 def test_missing_and_unknown_units_name_the_variable_and_what_to_set() -> None:
@@ -65,9 +70,9 @@ def test_missing_and_unknown_units_name_the_variable_and_what_to_set() -> None:
     with pytest.raises(WindError, match="z is in 'bananas', which is not a geopotential"):
         converted(np.zeros(1), "height", "z", "bananas")
     with pytest.raises(WindError, match="lnsp is in 'Pa', but the logarithm"):
-        unlogged(np.zeros(1), "lnsp", "Pa")
+        check_units("lnsp", "Pa", "pressure", logarithm=True)
     with pytest.raises(WindError, match="lnsp goes up to 100000, which is the logarithm of no pressure"):
-        unlogged(np.array([np.nan, 1e5]), "lnsp", "1")
+        unlogged(np.array([np.nan, 1e5]), "lnsp")
 
 
 @pytest.mark.parametrize(
