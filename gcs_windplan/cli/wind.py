@@ -23,7 +23,7 @@ HELP = (
 
 
 def wind(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="The forecast's files.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", help="The forecast's files.")],
     at: Annotated[
         str | None,
         typer.Option(
@@ -76,9 +76,9 @@ def _inventory(opened: Sequence[OpenFile], asked: Asked, view: View, as_json: bo
     except WindError as error:
         if asked != Asked() or view != View():
             raise
-        picture = [f"no picture: {error}"]
+        picture = wind_picture.Picture([], [f"no picture: {error}"])
     wind_tables.print_inventory(take_inventory(opened))
-    wind_tables.print_lines(picture)
+    wind_tables.print_picture(picture)
 
 
 def _wind_at(
@@ -92,9 +92,10 @@ def _wind_at(
     if as_json:
         typer.echo(wind_json.format_wind(found))
         return
-    picture = [] if view.radius is None else wind_picture.draw(catalogues, asked, view)
+    picture = None if view.radius is None else wind_picture.draw(catalogues, asked, view)
     wind_tables.print_wind(found)
-    wind_tables.print_lines(picture)
+    if picture is not None:
+        wind_tables.print_picture(picture)
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,35 +19,54 @@ _CELL = 8  # characters
 _CALM = 0.05  # [m/s] what is shown as 0.0 blows nowhere
 
 
-def draw(catalogues: Sequence[Catalogue], asked: Asked, view: View) -> list[str]:
-    """The lines of a picture. Raises `WindError`."""
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Its lines, and sentences about it."""
+
+    lines: list[str]
+    captions: list[str]
+
+
+def draw(catalogues: Sequence[Catalogue], asked: Asked, view: View) -> Picture:
+    """The picture that is asked for. Raises `WindError`."""
     moment, choice = asked
     if view.place is not None and view.radius is not None:
-        return _level_lines(map_around(catalogues, view.place, view.radius, moment, view.level, choice))
+        return _of_level(map_around(catalogues, view.place, view.radius, moment, view.level, choice))
     if single_place(catalogues) and moment is None and view.level is None:
-        return _time_lines(times_of(catalogues, choice))
-    return _level_lines(map_of(catalogues, moment, view.level, choice))
+        return _of_times(times_of(catalogues, choice))
+    return _of_level(map_of(catalogues, moment, view.level, choice))
 
 
-def _level_lines(found: LevelMap) -> list[str]:
+def _of_level(found: LevelMap) -> Picture:
     scale = 1.0 if found.about is None else 1e-3
     rows, columns = _numbers(found.rows * scale, found.about), _numbers(found.columns * scale, found.about)
     corner = "lat\\lon" if found.about is None else "km"
     lines = _lattice(corner, rows, columns, found.winds, found.outside)
     extremes = _extremes(found.winds, lambda row, column: f"{rows[row].strip()}, {columns[column].strip()}")
-    return [*lines, "", f"wind at {found.level}, {_when(found.moment, found.times)}{_member(found)}; {_where(found)}",
-            f"{extremes}; arrows point where it blows to, north is up"]  # fmt: skip
+    blank = ["blank: outside of its area"] if found.outside.any() else []
+    return Picture(
+        lines,
+        [
+            f"wind at {found.level}, {_when(found.moment, found.times)}{_member(found)}; {_where(found)}",
+            "; ".join([extremes, "arrows point where it blows to, north is up", *blank]),
+        ],
+    )
 
 
-def _time_lines(found: TimeMap) -> list[str]:
+def _of_times(found: TimeMap) -> Picture:
     rows = [_short(str(level)) for level in found.levels]
     columns = [say_time(time)[11:16] for time in found.times] or ["any time"]
     lines = _lattice("UTC", rows, columns, found.winds, np.zeros(found.winds.shape[:2], dtype=np.bool_))
     span = f", {say_span(found.times[0], found.times[-1])}" if found.times else ""
     extremes = _extremes(found.winds, lambda row, column: f"{found.levels[row]}, {columns[column]}")
     place = f"{found.place.latitude_deg:.4f}, {found.place.longitude_deg:.4f}"
-    return [*lines, "", f"wind at {place}, levels upwards, times to the right{span}{_member(found)}",
-            f"{extremes}; arrows point where it blows to, up is north"]  # fmt: skip
+    return Picture(
+        lines,
+        [
+            f"wind at {place}, levels upwards, times to the right{span}{_member(found)}",
+            f"{extremes}; arrows point where it blows to, up is north",
+        ],
+    )
 
 
 def _lattice(corner: str, rows: list[str], columns: list[str], winds: FloatArray, outside: BoolArray) -> list[str]:
@@ -68,11 +88,13 @@ def _cell(u: float, v: float) -> str:
 
 
 def _numbers(values: FloatArray, about: object) -> list[str]:
-    """Numbers with as few decimals as tell them apart."""
+    """Degrees as exact as there is room for, distances with as few decimals as tell them apart."""
     steps = np.abs(np.diff(values))
-    exact = 0.02 * float(steps.min()) if len(steps) else 1e-4
-    decimals = next((d for d in range(4) if np.abs(values - np.round(values, d)).max() <= exact), 4)
-    return [f"{round(value, decimals) + 0.0:{'' if about is None else '+'}.{decimals}f}" for value in values.tolist()]
+    off = (1e-3 if about is None else 0.02) * float(steps.min()) if len(steps) else 1e-4
+    decimals = next((d for d in range(3) if np.abs(values - np.round(values, d)).max() <= off), 3)
+    most = _CELL - 2 - len(f"{np.abs(values).max():.0f}") - int((values < 0).any())
+    decimals, sign = min(decimals, max(most, 0)), "" if about is None else "+"
+    return [f"{round(value, decimals) + 0.0:{sign}.{decimals}f}" for value in values.tolist()]
 
 
 def _extremes(winds: FloatArray, name: Callable[[int, int], str]) -> str:
@@ -92,8 +114,9 @@ def _when(moment: float | None, times: tuple[float, ...]) -> str:
         return "no time given"
     if times in ((moment,), ()):
         return say_time(moment)
-    between = " and ".join(say_time(time) for time in times)
-    return f"{say_time(moment)} ({'between' if len(times) > 1 else 'as at'} {between})"
+    if len(times) == 1:
+        return f"{say_time(moment)} (as at {say_time(times[0])})"
+    return f"{say_time(moment)} (between {say_span(*times, 'and')})"
 
 
 def _member(found: LevelMap | TimeMap) -> str:

@@ -13,6 +13,7 @@ from rich.text import Text
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cli import wind_words as words
 from gcs_windplan.cli.tables import make_console
+from gcs_windplan.cli.wind_picture import Picture
 from gcs_windplan.wind.inventory import Inventory
 from gcs_windplan.wind.pairing import say_time
 from gcs_windplan.wind.sheets import Level
@@ -28,16 +29,17 @@ def print_inventory(inventory: Inventory) -> None:
     """What is in the files: facts, then a table of quantities."""
     console = make_console()
     for name, text in _facts(inventory):
-        first, *rest = wrap(text, max(console.width - _INDENT, 20), break_on_hyphens=False) or [""]
-        print_lines([f"{name:<{_INDENT}}{first}", *(" " * _INDENT + line for line in rest)])
+        _say(text, f"{name:<{_INDENT}}")
     console.print(_quantities(inventory))
 
 
-def print_lines(lines: Sequence[str]) -> None:
-    """Lines as they are."""
-    console = make_console()
-    for line in lines:
-        console.print(line, soft_wrap=True, markup=False)
+def print_picture(picture: Picture) -> None:
+    """A picture, and what it shows."""
+    for line in picture.lines:
+        _print(line)
+    _print("")
+    for text in picture.captions:
+        _say(text)
 
 
 def print_wind(found: Sounding | Spot) -> None:
@@ -46,6 +48,18 @@ def print_wind(found: Sounding | Spot) -> None:
         _print_spot(found)
     else:
         _print_sounding(found)
+
+
+def _say(text: str, name: str = "") -> None:
+    """A text in as many lines as it takes, with its name in front."""
+    indent = " " * (len(name) or 2)
+    width = max(make_console().width, len(indent) + 20)
+    for line in wrap(text, width, initial_indent=name, subsequent_indent=indent, break_on_hyphens=False):
+        _print(line)
+
+
+def _print(line: str) -> None:
+    make_console().print(line, soft_wrap=True, markup=False)
 
 
 def _facts(inventory: Inventory) -> list[tuple[str, str]]:
@@ -58,7 +72,7 @@ def _facts(inventory: Inventory) -> list[tuple[str, str]]:
         ("times", words.times_line(inventory.times, inventory.whole)),
         ("members", words.members_line(inventory)),
         *(("grid", words.grid_line(grid)) for grid in inventory.grids),
-        ("beside", words.beside_line(inventory)),
+        ("also", words.beside_line(inventory)),
         ("lone", words.lone_line(inventory.lone)),
         ("missing", words.missing_line(count)),
         *(("broken", text) for text in count.broken),
@@ -85,22 +99,24 @@ def _quantities(inventory: Inventory) -> Table:
 
 
 def _print_spot(spot: Spot) -> None:
-    print_lines([_heading(spot.here, spot)])
+    _say(_heading(spot.here, spot))
     table = _wind_table(spot.members)
     _add(table, [], spot.members, spot.winds)
     make_console().print(table)
-    print_lines([*_gusts(spot.here), _how(spot)])
+    for text in (*_gusts(spot.here), _how(spot)):
+        _say(text)
 
 
 def _print_sounding(sounding: Sounding) -> None:
-    print_lines([_heading(sounding.here, None)])
+    _say(_heading(sounding.here, None))
     table = _wind_table(sounding.rows[0].members, "level", "m AMSL", "m AGL")
     for row in sounding.rows:
         _add(table, _level_cells(row, sounding.here.ground), row.members, row.winds)
     make_console().print(table)
     marks = {_mark(row) for row in sounding.rows}
     notes = [note for mark, note in _MARKS.items() if mark in marks]
-    print_lines([*_gusts(sounding.here), f"linear between the nodes about the place{_between(sounding.here)}", *notes])
+    for text in (*_gusts(sounding.here), f"linear between the nodes about the place{_between(sounding.here)}", *notes):
+        _say(text)
 
 
 _MARKS = {
@@ -190,7 +206,7 @@ def _between(here: Here) -> str:
         return ""
     if len(here.times) == 1:
         return f"; as at {say_time(here.times[0])}, the only time"
-    return f"; in time between {say_time(here.times[0])} and {say_time(here.times[1])}"
+    return f"; in time between {words.say_span(*here.times, 'and')}"
 
 
 def _how(spot: Spot) -> str:

@@ -125,10 +125,10 @@ def lone_line(lone: Sequence[Holding]) -> str:
     return "; ".join(f"{one.quantity} without {_PARTNERS[one.quantity]}: {levels_cell(one.levels)}" for one in lone)
 
 
-def say_span(first: float, last: float) -> str:
+def say_span(first: float, last: float, word: str = "to") -> str:
     """The first and the last of some times, the day only once if it is the same."""
     begin, end = say_time(first), say_time(last)
-    return f"{begin.removesuffix(' UTC')} to {end[11:] if begin[:10] == end[:10] else end}"
+    return f"{begin.removesuffix(' UTC')} {word} {end[11:] if begin[:10] == end[:10] else end}"
 
 
 def few(words: Sequence[str], most: int = _LISTED) -> str:

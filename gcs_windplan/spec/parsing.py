@@ -24,6 +24,7 @@ _HINTS: Final = (
         "a value with ': ' needs quotes; fields of one section start in the same column",
     ),
     ("quoted scalar", "close the quotes"),
+    ("nesting depth", "lists and sections nest too deeply"),
     ("flow mapping", "close the { } and put commas between fields"),
     ("flow sequence", "close the [ ] and put commas between entries"),
     ("undefined alias", "a value that starts with * needs quotes"),

@@ -7,7 +7,7 @@ What is chosen, how it is read, turned to true north and given heights is what p
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -21,7 +21,17 @@ from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.wind.extent import ways_between
 from gcs_windplan.wind.forecast import Wanted, _Assembly
-from gcs_windplan.wind.pairing import STEADY_FOR, Members, Span, Winds, choose, nothing_found, pair_up, say_time
+from gcs_windplan.wind.pairing import (
+    STEADY_FOR,
+    Members,
+    Pair,
+    Span,
+    Winds,
+    choose,
+    nothing_found,
+    pair_up,
+    say_time,
+)
 from gcs_windplan.wind.placement import Box, Part, part_of
 from gcs_windplan.wind.sheets import Catalogue, Grid, Level
 
@@ -34,16 +44,26 @@ _WINDOW = 8  # rows and columns of a projected grid on either side of a place: e
 _ON_EDGE = 1.0  # [m] as planning has it
 
 
-def members_for(catalogues: Sequence[Catalogue], choice: Choice) -> Members:
-    """What `choose` is to be asked for."""
-    if choice == "all":
-        return "all"
-    if choice is not None:
-        return (choice,)
+def pairs_of(catalogues: Sequence[Catalogue]) -> list[Pair]:
+    """All winds of some files on the grid that planning would take: the one with the most of them.
+
+    Raises `WindError` where there are none.
+    """
     pairs = pair_up(sheet for catalogue in catalogues for sheet in catalogue.sheets)
-    counts = Counter(pair.first.grid.key for pair in pairs)
-    there = {p.first.member for p in pairs if p.first.grid.key == counts.most_common(1)[0][0]}
-    return None if None in there or not there else "all"
+    if not pairs:
+        raise WindError(nothing_found(catalogues))
+    (most, _), *_ = Counter(pair.first.grid.key for pair in pairs).most_common(1)
+    return [pair for pair in pairs if pair.first.grid.key == most]
+
+
+def members_for(catalogues: Sequence[Catalogue], choice: Choice) -> Members:
+    """What `choose` is to be asked for. Raises `WindError` for a member where there is no ensemble."""
+    there = {pair.first.member for pair in pairs_of(catalogues)}
+    if choice is not None and there == {None}:
+        raise WindError("it is no ensemble, so that there are no members to choose from")
+    if choice is None:
+        return None if None in there else "all"
+    return "all" if choice == "all" else (choice,)
 
 
 def moment_in(catalogues: Sequence[Catalogue], asked: float | None) -> float | None:
@@ -51,10 +71,7 @@ def moment_in(catalogues: Sequence[Catalogue], asked: float | None) -> float | N
 
     Raises `WindError` if there is no wind at all, and none at the moment asked for, which says by how much.
     """
-    pairs = pair_up(sheet for catalogue in catalogues for sheet in catalogue.sheets)
-    if not pairs:
-        raise WindError(nothing_found(catalogues))
-    times = sorted({pair.first.time for pair in pairs if pair.first.time is not None})
+    times = sorted({pair.first.time for pair in pairs_of(catalogues) if pair.first.time is not None})
     if asked is None or not times:
         return times[0] if times else None
     outside = max(times[0] - asked, asked - times[-1])
@@ -63,6 +80,12 @@ def moment_in(catalogues: Sequence[Catalogue], asked: float | None) -> float | N
     span = f"{say_time(times[0])} to {say_time(times[-1])}" if len(times) > 1 else f"{say_time(times[0])} alone"
     side = "before its first" if asked < times[0] else "after its last"
     raise WindError(f"{say_time(asked)} is {outside / 3600:.1f} h {side} time: it has wind for {span}")
+
+
+def from_the_ground_up(levels: Iterable[Level]) -> tuple[Level, ...]:
+    """Levels of each kind in the order in which a balloon meets them."""
+    downwards = ("pressure", "model")
+    return tuple(sorted(levels, key=lambda level: (level.kind, level.value * (-1 if level.kind in downwards else 1))))
 
 
 def winds_by_level(

@@ -14,6 +14,7 @@ import numpy as np
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.anyfile import open_catalogue
+from gcs_windplan.wind.excerpt import from_the_ground_up
 from gcs_windplan.wind.extent import Extent, Spacing, extent_of, spacing_of
 from gcs_windplan.wind.pairing import pair_up
 from gcs_windplan.wind.series import Series, series_of
@@ -25,7 +26,6 @@ _ORDER: tuple[Quantity, ...] = (
     *WIND, "gust", "height", "terrain", "roughness", "temperature", "humidity", "pressure",
 )  # fmt: skip
 _COUNTED = _ORDER[:8]  # what missing values are counted of
-_UPWARDS = {"height": 1, "altitude": 1, "pressure": -1, "model": -1, "surface": 1, "unknown": 1}
 
 _MOST_SHEETS, _MOST_VALUES = 2000, 50_000_000  # that are all read
 _SAMPLED_SHEETS, _SAMPLED_VALUES = 200, 20_000_000  # that are read of more
@@ -185,11 +185,6 @@ def count_missing(sheets: Sequence[Sheet]) -> Count:
     return Count(len(chosen), len(all_of_them), found, tuple(broken))
 
 
-def from_the_ground_up(levels: Sequence[Level]) -> tuple[Level, ...]:
-    """Levels of each kind in the order in which a balloon meets them."""
-    return tuple(sorted(levels, key=lambda level: (level.kind, _UPWARDS[level.kind] * level.value)))
-
-
 def _facts(file: OpenFile) -> FileFacts:
     catalogue = file.catalogue
     return FileFacts(file.path, file.format, catalogue.title, len(catalogue.sheets), catalogue.unused)
@@ -227,7 +222,7 @@ def _holding(sheets: Sequence[Sheet], grid: int) -> Holding:
         quantity=sheets[0].quantity,
         names=tuple(dict.fromkeys(sheet.name for sheet in sheets)),
         units=sheets[0].units,
-        levels=from_the_ground_up(list({sheet.level for sheet in sheets})),
+        levels=from_the_ground_up({sheet.level for sheet in sheets}),
         times=len({sheet.time for sheet in sheets if sheet.time is not None}),
         members=len({sheet.member for sheet in sheets if sheet.member is not None}),
         sheets=len(sheets),

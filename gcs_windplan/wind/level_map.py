@@ -15,9 +15,18 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.wind.excerpt import Choice, Excerpt, members_for, moment_in, part_at, winds_by_level
+from gcs_windplan.wind.excerpt import (
+    Choice,
+    Excerpt,
+    from_the_ground_up,
+    members_for,
+    moment_in,
+    pairs_of,
+    part_at,
+    winds_by_level,
+)
 from gcs_windplan.wind.extent import extent_of
-from gcs_windplan.wind.pairing import Winds, pair_up
+from gcs_windplan.wind.pairing import Winds
 from gcs_windplan.wind.placement import LatLonPlacement, Part, part_of
 from gcs_windplan.wind.sheets import Catalogue, Grid, Level
 
@@ -101,8 +110,7 @@ def times_of(catalogues: Sequence[Catalogue], choice: Choice) -> TimeMap:
     """The wind on the levels at up to eleven times, where there is a single place. Raises `WindError`."""
     members = members_for(catalogues, choice)
     found, _ = winds_by_level(catalogues, members, moment_in(catalogues, None))
-    pairs = pair_up(sheet for catalogue in catalogues for sheet in catalogue.sheets)
-    every = sorted({pair.first.time for pair in pairs if pair.first.time is not None})
+    every = sorted({pair.first.time for pair in pairs_of(catalogues) if pair.first.time is not None})
     times = tuple(every[:: max(1, math.ceil(len(every) / COLUMNS))])
     levels = sorted(found, key=_height_of, reverse=True)
     levels = levels[(len(levels) - 1) % (stride := math.ceil(len(levels) / _LEVELS)) :: stride]
@@ -149,7 +157,7 @@ def _chosen(
     for there in found:
         if there.kind == level.kind and math.isclose(there.value, level.value, rel_tol=1e-6):
             return found[there], there, moment
-    raise WindError(f"it has no wind at {level}, but at {', '.join(map(str, sorted(found)))}")
+    raise WindError(f"it has no wind at {level}, but at {', '.join(map(str, from_the_ground_up(found)))}")
 
 
 def _of_nodes(winds: Winds, level: Level, moment: float | None) -> LevelMap:

@@ -52,7 +52,7 @@ def series_of(times: Iterable[float]) -> Series:
     runs = [list(run) for _, run in groupby(range(len(ways)), key=lambda number: usual[number])]
     even = len(runs) == 1 or (len(runs) <= _MOST_STEPS and all(_times_in(run, usual, ways) > 1 for run in runs))
     steps = tuple((usual[run[0]], ordered[run[-1] + 1]) for run in runs if even)
-    gaps = tuple(_gap(ordered[number], usual[number], ways[number]) for number in holes)
+    gaps = tuple(_gap(ordered[number], usual[number], ways[number]) for number in holes if even)
     return Series(tuple(ordered), steps, gaps)
 
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.wind.excerpt import POINT, members_for, moment_in
+from gcs_windplan.wind.excerpt import POINT, members_for, pairs_of
 from gcs_windplan.wind.forecast import Wanted, _Assembly
-from gcs_windplan.wind.pairing import Span, Winds, choose, pair_up
+from gcs_windplan.wind.pairing import Span, Winds, choose
 from gcs_windplan.wind.placement import part_of
 from gcs_windplan.wind.sheets import Catalogue, Grid
 
@@ -35,19 +35,18 @@ class Trial:
 
 def tried(catalogues: Sequence[Catalogue], whole: bool) -> Trial:
     """Plans, as far as the wind goes: all times and members (`whole`), or the first of each."""
-    pairs = pair_up(sheet for catalogue in catalogues for sheet in catalogue.sheets)
-    times = sorted({pair.first.time for pair in pairs if pair.first.time is not None})
-    departures = (times[0], times[-1]) if times else None
+    departures: tuple[float, float] | None = None
     members: tuple[int, ...] = ()
     try:
-        first = moment_in(catalogues, None)
+        pairs = pairs_of(catalogues)
+        times = sorted({pair.first.time for pair in pairs if pair.first.time is not None})
+        departures = (times[0], times[-1]) if times else None
         if members_for(catalogues, None) == "all":
-            found = choose(catalogues, "all", Span(first), None)
-            members = tuple(member for member in found.members if member is not None)
+            members = tuple(sorted({pair.first.member for pair in pairs if pair.first.member is not None}))
         lasting = times[-1] - times[0] if whole and times else 0.0
-        chosen = members if whole or not members else members[:1]
-        winds = choose(catalogues, chosen or None, Span(first, lasting), None)
-        return Trial("", _made(winds, first, lasting), departures, members, whole)
+        chosen = members if whole else members[:1]
+        winds = choose(catalogues, chosen or None, Span(times[0] if times else None, lasting), None)
+        return Trial("", _made(winds, times[0] if times else None, lasting), departures, members, whole)
     except WindError as error:
         return Trial(str(error), "", departures, members, whole)
 

@@ -155,7 +155,7 @@ def netcdf(path: Path, *, v: bool = True, hole: bool = False, far: bool = False)
 
 def wind_from(path: Path, **kind):
     netcdf(path, **kind)
-    return {"netcdf": path.name}
+    return {"forecast": path.name, "profile": {"law": "log", "roughness": 0.1}}
 
 
 SURFACE = yaml.safe_load(GOOD)["terrain"]

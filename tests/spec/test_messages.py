@@ -28,6 +28,12 @@ def test_a_wrong_field(field: str, value: str, line: str) -> None:
     assert complaints(mission(**{field: value})) == [line]
 
 
+def test_brackets_without_end_are_an_error_and_no_crash() -> None:
+    """The newer libyaml gives up by itself, at another place."""
+    (line,) = complaints("[" * 200_000)
+    assert "lists and sections nest" in line
+
+
 def test_an_absent_field() -> None:
     assert complaints(mission(name=None)) == ["1:1: name: is missing; add it, for example 'name: ridge-crossing'"]
 
@@ -60,7 +66,6 @@ NO_MISSION = [
     ("name: x\nvia: \ud800", "2:6", r"the character '\ud800' is not allowed in YAML; remove it"),
     ("via: &a [*a]", "1:6", "an alias (*name) stands inside of what it stands for"),
     ("via: " + "[" * 50 + "]" * 50, "1:45", TOO_DEEP),
-    ("[" * 200_000, "1:41", TOO_DEEP),
     ("", "1:1", EMPTY),
     ("# only a comment\n", "1:1", EMPTY),
     ("- a\n- b\n", "1:1", NO_FIELDS),
@@ -113,7 +118,7 @@ departure:
         "3:3: vehicle.airspede: unknown field; did you mean 'airspeed'?",
         "4:10: vehicle.climb: '2 ft' is a length, but a speed belongs here; " + SPEED_ADVICE,
         "6:3: vehicle.type: appears twice, first in line 5; keep one of the two",
-        "11:3: wind.constant: cannot stand beside 'calm'; keep one of calm, constant, paper or netcdf",
+        "11:3: wind.constant: cannot stand beside 'calm'; keep one of calm, constant, paper or forecast",
         "12:5: wind.constant.from: is missing; add it, for example 'from: 270 deg'",
         "12:12: wind.constant.speed: unknown unit 'kmh' for a speed; known units: " + ", ".join(SPEED.units),
         f"13:9: start.east: {NEEDS_ORIGIN}",

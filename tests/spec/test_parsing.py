@@ -113,7 +113,7 @@ GOOD = [
     ("terrain", f"{{surface: {{size: 800 m, cell: 5 m, hills: []}}, {ORIGIN}}}"),
     ("wind", "{paper: {field: jet, reading: literal, scale: 9}, profile: {law: log, roughness: 1}}"),
     ("wind", "{paper: {field: rotation}}"),
-    ("wind", "{netcdf: w.nc, extend: nearest}"),
+    ("wind", "{forecast: w.nc, extend: nearest}"),
     ("wind", "{constant: {speed: 0, from: 6.283185307179586 rad}}"),
     ("cost", "angle"),
     ("cost", "{name: time}"),
