@@ -9,7 +9,7 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.cli.wind_options import Asked, View
-from gcs_windplan.cli.wind_words import say_span
+from gcs_windplan.cli.wind_words import say_span, short
 from gcs_windplan.wind.level_map import LevelMap, TimeMap, map_around, map_of, single_place, times_of
 from gcs_windplan.wind.pairing import say_time
 from gcs_windplan.wind.sheets import Catalogue
@@ -54,7 +54,7 @@ def _of_level(found: LevelMap) -> Picture:
 
 
 def _of_times(found: TimeMap) -> Picture:
-    rows = [_short(str(level)) for level in found.levels]
+    rows = [short(level) for level in found.levels]
     columns = [say_time(time)[11:16] for time in found.times] or ["any time"]
     lines = _lattice("UTC", rows, columns, found.winds, np.zeros(found.winds.shape[:2], dtype=np.bool_))
     span = f", {say_span(found.times[0], found.times[-1])}" if found.times else ""
@@ -116,7 +116,7 @@ def _when(moment: float | None, times: tuple[float, ...]) -> str:
         return say_time(moment)
     if len(times) == 1:
         return f"{say_time(moment)} (as at {say_time(times[0])})"
-    return f"{say_time(moment)} (between {say_span(*times, 'and')})"
+    return f"{say_time(moment)} (between {say_span(times[0], times[-1], 'and')})"
 
 
 def _member(found: LevelMap | TimeMap) -> str:
@@ -142,7 +142,3 @@ def _ordinal(number: int) -> str:
     if number % 100 in (11, 12, 13):
         return f"{number}th"
     return f"{number}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th') }"
-
-
-def _short(level: str) -> str:
-    return level.replace(" above ground", " agl").replace(" above mean sea level", " amsl")

@@ -120,7 +120,7 @@ def _print_sounding(sounding: Sounding) -> None:
 
 
 _MARKS = {
-    "*": "* below the forecast's own ground: planning passes over it",
+    "*": "* no higher than the forecast's own ground or its levels above ground: planning passes over it",
     "+": "+ planning has no use for it: its height is not known, or other times, members or levels fit better",
 }
 
@@ -184,11 +184,7 @@ def _level_cells(row: Row, ground: float) -> list[str]:
     height = float(np.mean(known)) if len(known) else np.nan
     above = row.level.value if row.level.kind == "height" else height - ground
     sea, over = (f"{value:.0f}" if np.isfinite(value) else "-" for value in (height, above))
-    return [f"{_short(row.level)}{_mark(row)}", sea, over]
-
-
-def _short(level: Level) -> str:
-    return str(level).replace(" above ground", " agl").replace(" above mean sea level", " amsl")
+    return [f"{words.short(row.level)}{_mark(row)}", sea, over]
 
 
 def _gusts(here: Here) -> list[str]:
@@ -206,7 +202,7 @@ def _between(here: Here) -> str:
         return ""
     if len(here.times) == 1:
         return f"; as at {say_time(here.times[0])}, the only time"
-    return f"; in time between {words.say_span(*here.times, 'and')}"
+    return f"; in time between {words.say_span(here.times[0], here.times[-1], 'and')}"
 
 
 def _how(spot: Spot) -> str:
@@ -225,4 +221,4 @@ def _how(spot: Spot) -> str:
 
 
 def _at(level: tuple[Level, float], datum: str) -> str:
-    return f"{_short(level[0])} ({level[1]:.0f} m {datum})"
+    return f"{words.short(level[0])} ({level[1]:.0f} m {datum})"

@@ -13,6 +13,7 @@ from gcs_windplan.wind.sheets import Level
 from gcs_windplan.wind.trial import Trial
 
 _LISTED = 8  # levels, times
+_SHORT = 16  # characters of names
 _STEPS = ((86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"))
 _BASES = {"height": "m above ground", "altitude": "m above sea level", "pressure": "hPa", "model": ""}
 _PARTNERS = {"u": "v", "v": "u", "speed": "direction", "direction": "speed"}
@@ -77,6 +78,8 @@ def beside_line(inventory: Inventory) -> str:
 def missing_line(count: Count) -> str:
     """How many values are missing."""
     values = sum(one.values for one in count.found)
+    if not values:
+        return "not counted: no sheet can be read"
     read = f"a sample of {count.read} of its" if count.sampled else "all" if count.read > 1 else "its"
     whence = f"{grouped(values)} values in {read} {'sheets' if count.sheets > 1 else 'sheet'}"
     lacking = [_missing(one) for one in count.found if one.missing]
@@ -111,8 +114,16 @@ def units_cell(holding: Holding) -> str:
 
 
 def names_cell(holding: Holding) -> str:
-    """The file's own names."""
-    return few([name for name in holding.names if name], 1)
+    """The file's own names: all if they are short, else the first."""
+    names = [name for name in holding.names if name]
+    return few(names, 4 if sum(map(len, names)) <= _SHORT else 1)
+
+
+def short(level: Level) -> str:
+    """A level's name in a table."""
+    if level.kind == "unknown":
+        return "height not told"
+    return str(level).replace(" above ground", " agl").replace(" above mean sea level", " amsl")
 
 
 def levels_cell(levels: Sequence[Level]) -> str:
@@ -180,7 +191,7 @@ def _missing(one: Missing) -> str:
 
 def _of_kind(kind: str, levels: Sequence[Level]) -> str:
     if kind in ("surface", "unknown"):
-        return "surface" if kind == "surface" else "height not told"
+        return short(levels[0])
     scale = 0.01 if kind == "pressure" else 1.0
     values = [f"{level.value * scale:g}" for level in levels]
     listed = ", ".join(values) if len(values) <= _LISTED else f"{len(values)} from {values[0]} to {values[-1]}"
@@ -198,7 +209,7 @@ def _spacing(spacing: Spacing) -> str:
 
 def _by(unit: str, steps: tuple[float | None, ...], digits: int) -> str:
     """Steps from row to row and column to column."""
-    known = [f"{step:.{digits}g}" if step < 100 else f"{step:.0f}" for step in steps if step is not None]
+    known = [f"{float(f'{step:.{digits}g}') if step < 100 else round(step):g}" for step in steps if step is not None]
     blank = "" if unit == "°" else " "
     return f"{' x '.join(dict.fromkeys(known))}{blank}{unit}" if known else ""
 

@@ -79,7 +79,8 @@ def interpolate_columns(
             highest = max(highest, terrain[j, i])
     scales = _scale(columns), _scale(rows), _scale(times)
     same = levels > na and heights.shape[0] == heights.shape[1] == heights.shape[2] == 1
-    flat = winds.reshape(winds.size)
+    flat, tall = winds.reshape(winds.size), heights.reshape(heights.size)  # views of columns would be slow, too
+    beyond = levels - na
     eastward = 2 * levels  # numbers from one column to the next
     northward = eastward * columns.size
     later = northward * rows.size
@@ -120,15 +121,15 @@ def interpolate_columns(
                 if weight == 0.0:
                     continue
                 k, j, i = t1 if corner & 4 else t, y1 if corner & 2 else y, x1 if corner & 1 else x
-                column = heights[0, 0, 0] if same else heights[k, j, i]
+                column = 0 if same else ((k * rows.size + j) * columns.size + i) * beyond
                 own, upper = terrain[j, i], guess + 1
-                below = column[guess - na] if na <= guess < levels - 1 else math.inf
-                if below <= z[n] < column[upper - na] and below > own + top and (na == 0 or below > ground[n] + top):
+                below = tall[column + guess - na] if na <= guess < levels - 1 else math.inf
+                if below <= z[n] < tall[column + upper - na] and below > own + top and (na == 0 or below > ground[n] + top):
                     lower = guess  # as in the column before: nearly always
-                    share = (z[n] - below) / (column[upper - na] - below)
+                    share = (z[n] - below) / (tall[column + upper - na] - below)
                 else:
                     lower, upper, share, factor = _in_column(
-                        above, column, own, roughness[j, i], law, z[n], ground[n], guess
+                        above, tall, column, beyond, own, roughness[j, i], law, z[n], ground[n], guess
                     )
                     guess = lower
                     weight *= factor
@@ -141,10 +142,15 @@ def interpolate_columns(
 
 @_inlined
 def _in_column(
-    above: FloatArray, heights: FloatArray, own: float, roughness: float, law: Law, z: float, ground: float, guess: int
-) -> tuple[int, int, float, float]:
-    """Two levels, the share of the upper one, and a factor on both; the factor is NaN where the wind is not known."""
-    na, levels = above.size, above.size + heights.size
+    above: FloatArray, heights: FloatArray, column: int, beyond: int, own: float, roughness: float, law: Law,
+    z: float, ground: float, guess: int,
+) -> tuple[int, int, float, float]:  # fmt: skip
+    """Two levels, the share of the upper one, and a factor on both; the factor is NaN where the wind is not known.
+
+    The column's heights above sea level are `beyond` numbers from `column` on.
+    """
+    na, levels = above.size, above.size + beyond
+    base = column - na  # a level's height stands at base + its number
     if math.isnan(ground):
         ground = own
     floor = own  # levels at or below it do not count
@@ -156,11 +162,11 @@ def _in_column(
         anchor = ground + top
         floor = max(anchor, own + top)
     lowest = na
-    while lowest < levels and heights[lowest - na] <= floor:
+    while lowest < levels and heights[base + lowest] <= floor:
         lowest += 1
-    if lowest == levels or z > heights[levels - na - 1] + _TOP:
+    if lowest == levels or z > heights[base + levels - 1] + _TOP:
         return 0, 0, 0.0, math.nan
-    height = heights[lowest - na]
+    height = heights[base + lowest]
     if z < height:
         if na > 0:
             return na - 1, lowest, (z - anchor) / (height - anchor), 1.0
@@ -168,14 +174,14 @@ def _in_column(
             return 0, 0, 0.0, math.nan
         return lowest, lowest, 0.0, min(_share_of(law, z - ground, height - max(ground, own), roughness), 1.0)
     lower = min(max(guess, lowest), levels - 1)
-    while lower < levels - 1 and heights[lower + 1 - na] <= z:
+    while lower < levels - 1 and heights[base + lower + 1] <= z:
         lower += 1
-    while lower > lowest and heights[lower - na] > z:
+    while lower > lowest and heights[base + lower] > z:
         lower -= 1
     if lower == levels - 1:
         return lower, lower, 0.0, 1.0
-    below, beyond = heights[lower - na], heights[lower + 1 - na]
-    return lower, lower + 1, (z - below) / (beyond - below), 1.0
+    under, over = heights[base + lower], heights[base + lower + 1]
+    return lower, lower + 1, (z - under) / (over - under), 1.0
 
 
 @_inlined

@@ -12,7 +12,7 @@ from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.wind.excerpt import Choice, Excerpt, members_for, moment_in, part_at, winds_by_level
 from gcs_windplan.wind.gridded import GriddedWind
-from gcs_windplan.wind.pairing import Span, choose, say_time
+from gcs_windplan.wind.pairing import Span, Winds, choose, say_time
 from gcs_windplan.wind.sheets import Catalogue, Level
 
 
@@ -32,7 +32,7 @@ class Row:
     """The wind on a level, one a member: `winds` (members, 2) towards true east and north [m/s], NaN where missing.
 
     `heights` (members,) above mean sea level [m], NaN where unknown. `planned`: planning has it too. `hidden`: it lies
-    below the forecast's own ground, where planning passes over it.
+    no higher than the forecast's own ground or its levels above ground, where planning passes over it.
     """
 
     level: Level
@@ -91,14 +91,17 @@ def sounding_at(catalogues: Sequence[Catalogue], place: GeoPoint, asked: float |
     """
     moment = moment_in(catalogues, asked)
     found, planned = winds_by_level(catalogues, members_for(catalogues, choice), moment)
-    excerpts = {
-        id(winds): Excerpt(winds, part_at(winds.grid, place), moment)
-        for winds in {id(winds): winds for winds in found.values()}.values()
-    }
-    first = excerpts[id(planned)] if planned is not None else next(iter(excerpts.values()))
-    here = here_of(first, place)
-    rows = [_row(excerpts[id(winds)], level, here.ground, winds is planned) for level, winds in found.items()]
-    return Sounding(here, tuple(sorted(rows, key=_upwards)))
+    columns: dict[int, _Column | None] = {}
+    for winds in ([planned] if planned is not None else []) + list(found.values()):
+        if id(winds) not in columns:
+            columns[id(winds)] = _column(winds, place, moment, needed=winds is planned or not columns)
+    first = next(column for column in columns.values() if column is not None)
+    rows = [
+        _row(column, level, first.here.ground, winds is planned)
+        for level, winds in found.items()
+        if (column := columns[id(winds)]) is not None
+    ]
+    return Sounding(first.here, tuple(sorted(rows, key=_upwards)))
 
 
 def spot_at(
@@ -129,11 +132,33 @@ def here_of(excerpt: Excerpt, place: GeoPoint) -> Here:
     return Here(place, excerpt.moment, excerpt.bracket, ground, known)
 
 
-def _row(excerpt: Excerpt, level: Level, ground: float, planned: bool) -> Row:
-    members = excerpt.winds.members
+@dataclass(frozen=True, slots=True, eq=False)
+class _Column:
+    """Winds over a place, and the heights of their levels, one dictionary a member."""
+
+    excerpt: Excerpt
+    here: Here
+    heights: tuple[dict[Level, float], ...]
+
+
+def _column(winds: Winds, place: GeoPoint, moment: float | None, needed: bool) -> _Column | None:
+    """The column of some winds, None if they do not reach the place. Raises `WindError` if they are needed there."""
+    try:
+        excerpt = Excerpt(winds, part_at(winds.grid, place), moment)
+    except WindError:
+        if needed:
+            raise
+        return None
+    here = here_of(excerpt, place)
+    return _Column(excerpt, here, tuple(_heights(excerpt, member, here.ground) for member in winds.members))
+
+
+def _row(column: _Column, level: Level, ground: float, planned: bool) -> Row:
+    excerpt, members = column.excerpt, column.excerpt.winds.members
     winds = np.array([excerpt.sampled(excerpt.wind(member, level), excerpt.origin)[0] for member in members])
-    heights = np.array([_heights(excerpt, member, ground).get(level, np.nan) for member in members])
-    hidden = level.kind != "height" and bool((heights <= ground).all())
+    heights = np.array([known.get(level, np.nan) for known in column.heights])
+    above = [ground + one.value for one in excerpt.winds.above if one.kind == "height"]
+    hidden = level.kind != "height" and bool((heights <= max([ground, *above])).all())
     return Row(level, members, winds, heights, planned, hidden)
 
 

@@ -29,12 +29,15 @@ def direction_from(winds: FloatArray) -> FloatArray:
 
 
 def spread_of(values: FloatArray) -> Spread:
-    """The spread of numbers (n,)."""
-    return Spread(float(np.median(values)), float(np.min(values)), float(np.max(values)))
+    """The spread of numbers (n,), NaN passed over; of NaN alone NaN."""
+    there = values[np.isfinite(values)]
+    if not len(there):
+        return Spread(np.nan, np.nan, np.nan)
+    return Spread(float(np.median(there)), float(np.min(there)), float(np.max(there)))
 
 
 def spread_of_directions(directions: FloatArray) -> Spread:
-    """The spread of directions (n,) [deg]; of NaN alone NaN."""
+    """The spread of directions (n,) [deg], NaN passed over; of NaN alone NaN."""
     there = np.sort(directions[np.isfinite(directions)])
     if not len(there):
         return Spread(np.nan, np.nan, np.nan)

@@ -2,25 +2,26 @@
 
     python missions/wind/synthetic_front.py
 
-It is no forecast and solves no equations of motion. Ten members, every three hours of 2026-05-01 from 06 UTC on for a
-day, so that a route has something to gain from leaving at the right time, and from not trusting one member. Clocks on
-the ground are four hours behind UTC. In the control, at 80 m above flat ground:
+It is no forecast and solves no equations of motion. It holds ten members, every three hours from 2026-05-01 06 UTC on
+for a day, so that a route has something to gain from leaving at the right time, and from not trusting one member.
+Clocks on the ground are four hours behind UTC. In the control, at 80 m above flat ground:
 
 - ahead of the front a flow from the south-west, 5 m/s at night, that grows to 9 m/s at noon on the ground (16 UTC);
-- close ahead of it a jet, a band 19 km wide between its half speeds, that adds 6 m/s (low-level jets ahead of cold
-  fronts: Browning and Pardoe 1973) and moves with it from north-west to south-east;
+- close ahead of it a jet that adds 5 m/s, a band 19 km wide where it adds half of that or more, which moves with the
+  front from north-west to south-east (low-level jets ahead of cold fronts: Browning and Pardoe 1973; this one is
+  narrow so that the terrain holds both the jet and what lies beside it);
 - the front, at 4 m/s a slow one, over the middle of the terrain at 18:50 UTC: within an hour the wind veers to
   north-west;
 - behind it 8 m/s, which fade to 3 m/s in the evening as the ground cools;
 - gusts of 1.4 times the wind at 10 m, most at the front: 1.8 times.
 
 Each member has its own draw of when the front comes, how strong the wind is, from where it blows and how far ahead of
-the front the jet lies. They part in proportion to the time since the run began: when the front comes by 1.2 h, 10 %,
-8 degrees and 4 km, in standard deviations. Member 0, the control, keeps to the above.
+the front the jet lies. They part in proportion to the time since the run began at 00 UTC; when the control's front is
+over the middle, by 1.2 h, 10 %, 8 degrees and 4 km in standard deviations. Member 0 is the control.
 
-Between its times whoever reads the file goes straight from one wind to the next: with three hours between them the
-front is seen to pass in as many, and a jet that falls between two of them is not seen at all. Real forecasts are no
-different. Height, ridges and valleys do what they do in `synthetic_jacksboro.py`, smoothed to the wider grid. The same
+Between two times whoever reads the file goes straight from one wind to the other. So here the front takes three hours
+to pass, and a jet that comes and goes between two times is not seen at all: that is what forecasts every three hours
+are like. Height, ridges and valleys do what they do in `synthetic_jacksboro.py`, smoothed to the wider grid. The same
 input gives the same file, byte for byte.
 """
 
@@ -31,7 +32,7 @@ from typing import NamedTuple
 
 import netCDF4
 import numpy as np
-from synthetic_jacksboro import LEVELS, coordinate, flow, grid, land_at, nodes, wind
+from synthetic_jacksboro import LEVELS, flow, grid, land_at, nodes, wind
 
 from gcs_windplan.arrays import FloatArray
 
@@ -52,9 +53,9 @@ COOLING = 19.0, 25.0  # [h] in which the wind behind the front fades
 SOUTH_WEST, VEER = 225.0, 90.0  # [deg] where the wind comes from at first, and by how much the front turns it
 PASSAGE = 18.0 + 50.0 / 60.0  # [h] when the control's front is over the middle
 PACE = 14.4  # [km/h] of the front
-WIDTH = 6.5  # [km] of the front: nine tenths of the turn take an hour
+WIDTH = 5.0  # [km] of the front: nine tenths of the turn take an hour
 JET = 5.0  # [m/s] that the jet adds
-JET_AHEAD = 12.0  # [km] of the front
+JET_AHEAD = 12.0  # [km] of the front, its middle
 JET_WIDTH = 8.0  # [km] standard deviation across
 GUST, SQUALL = 1.4, 1.8  # times the wind at 10 m: far from the front, and at it
 SQUALLS = 12.0  # [km] from the front, where 1/e of the difference is left
@@ -87,10 +88,10 @@ def main() -> None:
     write(FILE, made)
     speed = np.hypot(made.u, made.v)[:, :, list(LEVELS).index(80.0)]
     for k, hour in enumerate(TIMES):
-        control, every = speed[0, k], speed[:, k]
+        control, strongest, gust = speed[0, k], speed[:, k].max(), made.gusts[:, k].max()
         print(
-            f"{hour % 24:02.0f} UTC: control {control.min():4.1f} to {control.max():4.1f} m/s, mean {control.mean():4.1f};"
-            f" all {every.min():4.1f} to {every.max():4.1f}, gusts at 10 m to {made.gusts[:, k].max():4.1f}"
+            f"{hour % 24:02.0f} UTC: control {control.min():4.1f} to {control.max():4.1f} m/s,"
+            f" mean {control.mean():4.1f}; all members to {strongest:4.1f} m/s, gusts at 10 m to {gust:4.1f}"
         )
     print(f"{FILE.name}: {FILE.stat().st_size} bytes")
 
@@ -115,7 +116,7 @@ def synthesize() -> Ensemble:
 
 
 def draw() -> list[Member]:
-    """The control, and members whose draws have a mean of 0 and a standard deviation of 1 to the last digit."""
+    """The control, and members whose draws have a mean of 0 and a standard deviation of 1."""
     draws = np.random.default_rng(SEED).standard_normal((MEMBERS - 1, len(Member._fields)))
     draws = (draws - draws.mean(axis=0)) / draws.std(axis=0)
     return [Member(0.0, 0.0, 0.0, 0.0), *(Member(*map(float, one)) for one in draws)]
@@ -177,7 +178,7 @@ def write(path: Path, made: Ensemble) -> None:
 
 
 def _alone(file: netCDF4.Dataset, name: str, value: float, **attributes: str) -> None:
-    """A coordinate of one value; without another its name is the standard name."""
+    """A coordinate of one value; its name is the standard name, unless another is given."""
     variable = file.createVariable(name, "f8", ())
     variable.setncatts({"standard_name": name} | attributes)
     variable[:] = value

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.benchmarks.forecast_jobs import FORECAST_JOBS
 from tests.benchmarks.measuring import Measured, pin, timed
 from tests.benchmarks.worlds import SPACING, VEHICLE, Square, explicit_edges, legs_over, real_ground, square
 
@@ -184,7 +185,7 @@ JOBS: dict[str, Callable[..., Measured]] = {
         our_legs,
         embree_legs,
     )
-}
+} | FORECAST_JOBS
 
 if __name__ == "__main__":
     pin(int(sys.argv[1]))
