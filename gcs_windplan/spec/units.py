@@ -26,6 +26,7 @@ class Quantity:
 
 _HOUR: Final = 3600.0
 _MINUTE: Final = 60.0
+_POUND: Final = 0.45359237  # [kg] NIST SP 811, B.6
 
 NUMBER: Final = Quantity("a number", "", "0.5", MappingProxyType({}))
 SPEED: Final = Quantity(
@@ -61,7 +62,17 @@ ANGLE: Final = Quantity(
     "an angle", "deg", "270 deg", MappingProxyType({"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)})
 )
 TIME: Final = Quantity("a time", "s", "15 min", MappingProxyType({"s": 1.0, "min": _MINUTE, "h": _HOUR}))
-QUANTITIES: Final = (SPEED, LENGTH, ANGLE, TIME)
+AREA: Final = Quantity("an area", "m2", "0.5 m2", MappingProxyType({"m2": 1.0, "m²": 1.0, "cm2": 1e-4, "cm²": 1e-4}))
+MASS: Final = Quantity("a mass", "kg", "4.2 kg", MappingProxyType({"kg": 1.0, "g": 1e-3, "lb": _POUND}))
+ENERGY: Final = Quantity(
+    "an energy", "J", "130 Wh", MappingProxyType({"J": 1.0, "kJ": 1e3, "MJ": 1e6, "Wh": _HOUR, "kWh": 1e3 * _HOUR})
+)
+POWER: Final = Quantity("a power", "W", "450 W", MappingProxyType({"W": 1.0, "kW": 1e3}))
+DENSITY: Final = Quantity("a density", "kg/m3", "1.225 kg/m3", MappingProxyType({"kg/m3": 1.0, "kg/m³": 1.0}))
+ACCELERATION: Final = Quantity(
+    "an acceleration", "m/s2", "2.5 m/s2", MappingProxyType({"m/s2": 1.0, "m/s²": 1.0})
+)
+QUANTITIES: Final = (SPEED, LENGTH, ANGLE, TIME, AREA, MASS, ENERGY, POWER, DENSITY, ACCELERATION)
 
 _WRITTEN: Final = re.compile(
     r"\s*([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(|[A-Za-z°,].*?)\s*", re.DOTALL

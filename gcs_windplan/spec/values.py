@@ -15,7 +15,21 @@ from typing import Annotated, Any, Final
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, StrictBool
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from gcs_windplan.spec.units import ANGLE, LENGTH, NUMBER, SPEED, Quantity, read_quantity, shown
+from gcs_windplan.spec.units import (
+    ACCELERATION,
+    ANGLE,
+    AREA,
+    DENSITY,
+    ENERGY,
+    LENGTH,
+    MASS,
+    NUMBER,
+    POWER,
+    SPEED,
+    Quantity,
+    read_quantity,
+    shown,
+)
 
 _NUMBER_TEXT: Final = r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?"
 
@@ -237,6 +251,16 @@ Direction = Annotated[float, Measure(ANGLE, at_least=0, at_most=360)]
 Number = Annotated[float, Measure(NUMBER)]
 Weight = Annotated[float, WEIGHT]
 Exponent = Annotated[float, Measure(NUMBER, at_least=0, at_most=1)]
+Share = Annotated[float, Measure(NUMBER, above=0, at_most=1)]
+Reserve = Annotated[float, Measure(NUMBER, at_least=0, at_most=0.9)]
+Coefficient = Annotated[float, Measure(NUMBER, at_least=0)]
+PositiveNumber = Annotated[float, Measure(NUMBER, above=0)]
+PositiveArea = Annotated[float, Measure(AREA, above=0)]
+Mass = Annotated[float, Measure(MASS, above=0)]
+Capacity = Annotated[float, Measure(ENERGY, at_least=3600)]  # a plain number below 1 Wh was meant as Wh
+PositivePower = Annotated[float, Measure(POWER, above=0)]
+AirDensity = Annotated[float, Measure(DENSITY, at_least=0.1, at_most=2)]
+Acceleration = Annotated[float, Measure(ACCELERATION, above=0)]
 Quantile = Annotated[float, Measure(NUMBER, at_least=0.5, at_most=0.99)]
 Member = Annotated[int, Whole(0, 100_000)]
 NodeCount = Annotated[int, Whole(2, 10_000_000)]

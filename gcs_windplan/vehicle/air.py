@@ -10,12 +10,12 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.constants import STANDARD_GRAVITY
 from gcs_windplan.errors import InputError
 
-SEA_LEVEL_DENSITY: Final = 1.225  # [kg/m³] ISO 2533:1975, table 1
-_SEA_LEVEL_PRESSURE: Final = 101_325.0  # [Pa] ISO 2533:1975, table 1
-_SEA_LEVEL_TEMPERATURE: Final = 288.15  # [K] ISO 2533:1975, table 1
-_GAS_CONSTANT: Final = 287.05287  # [J/kg/K] of dry air; ISO 2533:1975, table 1
-_LAPSE: Final = 0.0065  # [K/m] up to 11 km; ISO 2533:1975, table 4
-_EARTH_RADIUS: Final = 6_356_766.0  # [m] of the geopotential; ISO 2533:1975, section 2.3
+SEA_LEVEL_DENSITY: Final = 1.225  # [kg/m³] ISO 2533:1975
+_SEA_LEVEL_PRESSURE: Final = 101_325.0  # [Pa] ISO 2533:1975
+_SEA_LEVEL_TEMPERATURE: Final = 288.15  # [K] ISO 2533:1975
+_GAS_CONSTANT: Final = 287.05287  # [J/kg/K] of dry air; ISO 2533:1975
+_LAPSE: Final = 0.0065  # [K/m] up to 11 km; ISO 2533:1975
+_EARTH_RADIUS: Final = 6_356_766.0  # [m] of the geopotential; ISO 2533:1975
 _LOWEST, _HIGHEST = -2000.0, 11_000.0  # [m] the layer that begins where ISO 2533 does and ends at the tropopause
 
 
@@ -30,10 +30,10 @@ def air_density(height: FloatArray | float, warmer: FloatArray | float = 0.0) ->
     if np.any(outside):
         found = float(metres[outside].flat[0])
         raise InputError(f"the air's density is known from {_LOWEST:g} m to {_HIGHEST:g} m, not at {found:g} m")
-    geopotential = _EARTH_RADIUS * metres / (_EARTH_RADIUS + metres)  # ISO 2533, equation (8)
+    geopotential = _EARTH_RADIUS * metres / (_EARTH_RADIUS + metres)
     standard = _SEA_LEVEL_TEMPERATURE - _LAPSE * geopotential
     if np.any(standard + warmth <= 0):
         raise InputError(f"air that is {float(np.min(warmth)):g} K warmer than standard has no temperature above 0 K")
     exponent = STANDARD_GRAVITY / (_GAS_CONSTANT * _LAPSE)
-    pressure = _SEA_LEVEL_PRESSURE * (standard / _SEA_LEVEL_TEMPERATURE) ** exponent  # equation (12)
+    pressure = _SEA_LEVEL_PRESSURE * (standard / _SEA_LEVEL_TEMPERATURE) ** exponent
     return np.asarray(pressure / (_GAS_CONSTANT * (standard + warmth)))

@@ -58,7 +58,7 @@ def best_range_airspeed(
     if not head_wind < highest:
         raise InputError(f"a head wind of {head_wind:g} m/s leaves no speed over ground at {highest:g} m/s")
 
-    def cost(airspeed: FloatArray) -> FloatArray:
+    def cost(airspeed: FloatArray | float) -> FloatArray:
         return energy_per_metre(model, airspeed, head_wind, density)
 
     return _cheapest(cost, max(lowest, head_wind), highest)
@@ -70,7 +70,7 @@ def energy_per_metre(
     """Joules per metre over ground in level flight against a head wind [m/s]; infinite without way over ground."""
     over_ground = np.asarray(airspeed, dtype=np.float64) - head_wind
     watts = model.watts(airspeed, 0.0, density)
-    return np.divide(watts, over_ground, out=np.full(np.shape(watts), math.inf), where=over_ground > 0)
+    return np.asarray(np.divide(watts, over_ground, out=np.full(watts.shape, math.inf), where=over_ground > 0))
 
 
 def flow(airspeed: FloatArray | float, climb_rate: FloatArray | float, density: FloatArray | float) -> Flow:
@@ -109,12 +109,15 @@ def _between(model: PowerModel, fastest: float, density: float) -> tuple[float, 
     return lowest, min(highest, fastest)
 
 
-def _cheapest(cost: Callable[[FloatArray], FloatArray], lowest: float, highest: float) -> float:
+def _cheapest(cost: Callable[[FloatArray | float], FloatArray], lowest: float, highest: float) -> float:
     """The airspeed of the smallest cost: a scan, then a search between the best one's neighbours."""
     from scipy.optimize import minimize_scalar  # here, since most who import this room never ask for it
 
     grid = np.linspace(lowest, highest, _SCAN)
     best = int(np.argmin(cost(grid)))
-    bounds = (grid[max(best - 1, 0)], grid[min(best + 1, _SCAN - 1)])
-    found = float(minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": _CLOSE}).x)
-    return found if cost(np.float64(found)) < cost(grid[best]) else float(grid[best])
+    bounds = (float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _SCAN - 1)]))
+    search = minimize_scalar(
+        lambda airspeed: float(cost(airspeed)), bounds=bounds, method="bounded", options={"xatol": _CLOSE}
+    )
+    found, scanned = float(search.x), float(grid[best])
+    return found if cost(found) < cost(scanned) else scanned

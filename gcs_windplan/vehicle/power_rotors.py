@@ -19,17 +19,17 @@ _HALVINGS: Final = 52  # of the interval [0, 1], down to a double's last digit
 
 @dataclass(frozen=True, slots=True)
 class RotaryWing:
-    """Zeng, Xu, Zhang 2019, Energy Minimization for Wireless Communication With Rotary-Wing UAV, equation (12).
+    """Blade element and momentum theory, as Zeng, Xu, Zhang 2019 write it (doi:10.1109/TWC.2019.2902559).
 
-    P = P0 (1 + 3 V²/U²) + Pi v/v0 + ½ d0 ρ s A V³, doi:10.1109/TWC.2019.2902559, with what they derive it from: the
-    blades' P0 = δ/8 ρ s A U³, in hover Pi = (1 + k) W^1.5/√(2ρA) and v0 = √(W/(2ρA)). So density and mass enter
-    exactly, at a tip speed that stays. That is the rotor's mechanical power; `efficiency` 1 leaves it at that.
+    P(V) = P0 (1 + 3 V²/U²) + Pi v/v0 + ½ d0 ρ s A V³ with what they derive it from: the blades' P0 = δ/8 ρ s A U³,
+    and in hover Pi = (1 + k) W^1.5/√(2ρA) and v0 = √(W/(2ρA)). So density and mass enter exactly, at a tip speed that
+    stays. This is the rotors' mechanical power; by `efficiency` it becomes the battery's.
 
-    Climbing at c they do not treat. Here W c is added, and the induced velocity v is that of momentum theory,
-    v √(V² + (c + v)²) = v0² (Leishman 2006, Principles of Helicopter Aerodynamics, sections 2.13 and 2.14); level it
-    is the paper's. Downwards it is the root with the air still passing down through the disc. In a steep descent
-    (-2 v0 < c < 0 with hardly any airspeed) momentum theory is a lower bound: measured rotors draw up to nearly
-    their hover power (his figure 2.19). Where the air would stream up through the disc, nothing is gained from it.
+    They do not treat climb. At a climb rate c, W c is added, and the induced velocity v is that of momentum theory:
+    v √(V² + (c + v)²) = v0², level the same as theirs (Leishman 2006, Principles of Helicopter Aerodynamics, sections
+    2.13 and 2.14). Downwards it is the root with air that still goes down through the disc, the excess k stays that
+    of level flight, and where the air would go up through the disc nothing is gained from it. Straight down and
+    slower than 2 v0 that is too little: rotors in their own wake draw up to about their hover power (section 2.13).
     """
 
     mass: float  # [kg] all that flies
@@ -67,18 +67,19 @@ class RotaryWing:
         speed, climb, rho = flow(airspeed, climb_rate, density)
         through = inflow(speed, climb, self.induced_velocity(rho))
         blades = self.blade_power(rho) * (1 + 3 * (speed / self.tip_speed) ** 2)
-        lift = self.mass * STANDARD_GRAVITY * (through + self.induced_excess * (through - climb))
+        induced = np.minimum(through - climb, inflow(speed, np.zeros_like(climb), self.induced_velocity(rho)))
+        lift = self.mass * STANDARD_GRAVITY * (through + self.induced_excess * induced)
         body = 0.5 * self.body_drag * rho * self.solidity * self.disc_area * speed**3
         return np.asarray((blades + lift + body) / self.efficiency)
 
 
 @dataclass(frozen=True, slots=True)
 class Multirotor:
-    """Liu, Sengupta, Kurzhanskiy 2017, A Power Consumption Model for Multi-rotor Small Unmanned Aircraft Systems.
+    """Coefficients fitted to flights, as Liu, Sengupta, Kurzhanskiy 2017 do (doi:10.1109/ICUAS.2017.7991310).
 
-    P = k1 T (c/2 + √(c²/4 + T/k2²)) + c2 T^1.5 + c4 V³ with T² = (m g - c5 (V cos α)²)² + (c4 V²)² and a climb rate c,
-    doi:10.1109/ICUAS.2017.7991310; their c3 and c6 are 0. Electrical power, as the coefficients are fitted to the
-    battery's. The angle α at which the air meets the rotors is that of the balance of forces, T sin α = c4 V².
+    P = k1 T (c/2 + √(c²/4 + T/k2²)) + c2 T^1.5 + c4 V³ with T² = (m g - c5 (V cos α)²)² + (c4 V²)² and a climb rate c;
+    their c3 and c6 are 0. Electrical power where the coefficients were fitted to the battery's. The angle α at which
+    the air meets the rotors is that of the balance of forces, T sin α = c4 V².
 
     The coefficients hold at `density`. At another one they change as the theory behind them says: the induced k2² =
     2ρA with ρ, the drag c4 and the lift c5 with ρ, the blades' c2 with ρ^-½ (P0 ~ ρ Ω³ at a thrust T ~ ρ Ω²).

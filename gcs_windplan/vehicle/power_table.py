@@ -29,7 +29,7 @@ class PowerTable:
     measured_airspeeds: tuple[float, ...]  # [m/s] ascending
     measured_watts: tuple[float, ...]  # [W] drawn from the battery in level flight
     density: float = SEA_LEVEL_DENSITY  # [kg/m³] in which it was measured
-    climb_efficiency: float = 0.5  # η; 1 by that of hovering, which is near a half (of the M600's specification, 0.48)
+    climb_efficiency: float = 0.5  # η; no source: about that of hovering (missions/vehicles/large_multirotor.yaml)
 
     def __post_init__(self) -> None:
         require(self, ("mass", "density"), shares=("climb_efficiency",))
@@ -68,7 +68,7 @@ class PowerTable:
         if np.any(outside):
             fast, dense, at = (float(one[outside].flat[0]) for one in (speed, rho, alike))
             text = (
-                f"{fast:g} m/s in air of {dense:.4g} kg/m³ is {at:.4g} m/s in the power table's {self.density:.4g} kg/m³;"
-                f" that goes from {first:g} to {last:g} m/s: measure further or keep to it"
+                f"{fast:g} m/s in air of {dense:.4g} kg/m³ is {at:.4g} m/s in the {self.density:.4g} kg/m³ of the power"
+                f" table, which goes from {first:g} to {last:g} m/s; measure further or keep to it"
             )
             raise InputError(Problem(text, "power.measured"))

@@ -18,7 +18,7 @@ class FixedWing:
     """Drag times airspeed, and weight times climb rate, by the efficiency from battery to thrust.
 
     P = (D V + W c)/η with D = ½ ρ V² S (CD0 + CL²/(π e AR)) and CL = W/(½ ρ V² S): a parabolic drag polar at small
-    angles of climb (Beard and McLain 2012, Small Unmanned Aircraft, equation (4.11); Anderson 2016, Introduction to
+    angles of climb (Beard and McLain 2012, Small Unmanned Aircraft, chapter 4; Anderson 2016, Introduction to
     Flight, sections 6.3 to 6.8). Electrical power if `efficiency` is that of propeller, motor and controller. In a
     descent steeper than the glide it is 0: a propeller gives nothing back. Infinite below the stall, which lies at a
     true airspeed that grows with 1/√ρ, and at no airspeed.

@@ -188,8 +188,9 @@ def part_of(grid: Grid, frame: LocalFrame, area: Box | None, extend: bool = Fals
         corners = _lattice_of(area)
         gap = float(part.placement.misses(part.placement.at(corners)).min())
         if gap > 1.0:
+            whole = part_of(grid, frame, None).placement.covers()
             raise WindError(
-                f"the wind ends {gap / 1000:.0f} km short of the area: {part.placement.covers()}; take another file, or"
+                f"the wind ends {gap / 1000:.0f} km short of the area: {whole}; take another file, or"
                 " say `extend: nearest` to take the wind at its edge"
             )
     return part

@@ -70,19 +70,21 @@ def every_value(path: Path) -> Iterator[Value]:
 def _of_grib(path: Path) -> Iterator[Value]:
     with path.open("rb") as file:
         while (message := eccodes.codes_grib_new_from_file(file)) is not None:
-            get = {key: eccodes.codes_get(message, key) for key in ("shortName", "level", "dataType", "number")
-                   if eccodes.codes_is_defined(message, key)}  # fmt: skip
-            time = datetime.strptime(
-                f"{eccodes.codes_get(message, 'validityDate')} {eccodes.codes_get(message, 'validityTime'):04d}",
-                "%Y%m%d %H%M",
-            ).replace(tzinfo=UTC)
-            nodes = [eccodes.codes_get_double_array(message, key) for key in ("latitudes", "longitudes", "values")]
-            quantity = {"z": "height"}.get(get["shortName"], get["shortName"])
-            member = get["number"] if get["dataType"] == "pf" else None
-            for latitude, longitude, value in zip(*nodes, strict=True):
-                scaled = value / 9.80665 if quantity == "height" else value
-                yield Value(quantity, f"{get['level']} hPa", time, member, latitude, _turned(longitude), scaled)
+            yield from _of_message(message)
             eccodes.codes_release(message)
+
+
+def _of_message(message: int) -> Iterator[Value]:
+    quantity = {"u": "u", "v": "v", "z": "height"}.get(eccodes.codes_get(message, "shortName"))
+    if quantity is None:
+        return
+    day, clock, level = (eccodes.codes_get(message, key) for key in ("validityDate", "validityTime", "level"))
+    time = datetime.strptime(f"{day} {clock:04d}", "%Y%m%d %H%M").replace(tzinfo=UTC)
+    member = eccodes.codes_get(message, "number") if eccodes.codes_get(message, "dataType") == "pf" else None
+    nodes = [eccodes.codes_get_double_array(message, key) for key in ("latitudes", "longitudes", "values")]
+    for latitude, longitude, value in zip(*nodes, strict=True):
+        scaled = value / 9.80665 if quantity == "height" else value
+        yield Value(quantity, f"{level} hPa", time, member, latitude, _turned(longitude), scaled)
 
 
 def _of_netcdf(path: Path) -> Iterator[Value]:

@@ -112,7 +112,9 @@ def test_format_title_units_area_and_planning_of_real_files(name: str) -> None:
 
 def test_levels_of_u_without_v_are_lone() -> None:
     found = _inventory(real("ecmwf_uv_on_different_levels.grib"))
-    assert [(one.quantity, [str(level) for level in one.levels]) for one in found.lone] == [("u", ["850 hPa", "400 hPa"])]
+    assert [(one.quantity, [str(level) for level in one.levels]) for one in found.lone] == [
+        ("u", ["850 hPa", "400 hPa"])
+    ]
 
 
 def test_u_without_v_is_listed_and_planning_says_why_it_stops(tmp_path: Path) -> None:
