@@ -26,8 +26,8 @@ _SAMPLES = 8  # of the wind along each leg
 class Departure:
     """One departure: how long the best route takes, and what wind it meets.
 
-    `seconds` and `length` [m] of the route, None where there is none: then `reason` says why. `spread` is the same
-    route in every member of an ensemble. `wind` and `gust` are the strongest along the route in any member [m/s]; the
+    `seconds` and `length` [m] of the route, None where there is none. `spread` is the same route in every member of an
+    ensemble. `reason` says why it cannot be flown, or not in as many members as the request's `robust` asks for. `wind` and `gust` are the strongest along the route in any member [m/s]; the
     gust is None where the forecast tells none. `worked` is the processor's time that it took [s].
     """
 
@@ -39,6 +39,11 @@ class Departure:
     gust: float | None = None
     reason: str | None = None
     worked: float = 0.0
+
+    @property
+    def feasible(self) -> bool:
+        """Whether it can be flown, over an ensemble in as many members as were asked for."""
+        return self.reason is None
 
 
 def moments_between(first: datetime, last: datetime, every: timedelta) -> list[datetime]:
@@ -86,14 +91,16 @@ class _Job:
         since = time.process_time()
         try:
             found = find_route(self.ready, self.choice, begin, shape_quickly)
-            if not np.isfinite(found.arrival):
-                raise NoRouteError("the route cannot be flown where the wind is looked at closely.", {})
         except (NoRouteError, WindError) as error:
             return Departure(moment, reason=str(error), worked=time.process_time() - since)
         length = float(np.sum(np.linalg.norm(np.diff(found.points, axis=0), axis=1)))
         spread = spread_of(self.request, found.points, begin)
         wind, gust = self._strongest(found.points, begin)
-        return Departure(moment, found.arrival - begin, length, spread, wind, gust, worked=time.process_time() - since)
+        reason = None
+        if spread is not None and not np.isfinite(spread.at(self.request.robust)):
+            reason = f"flown in {len(spread.seconds) - spread.unflyable} of {len(spread.seconds)} members only"
+        worked = time.process_time() - since
+        return Departure(moment, found.arrival - begin, length, spread, wind, gust, reason, worked)
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

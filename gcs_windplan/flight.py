@@ -102,7 +102,7 @@ def fly(
     """
     starts, ends = points[:-1], points[1:]
     parts, times = fly_legs(points, wind, vehicle, begin)
-    _refuse_unflyable(parts, times, wind)
+    _refuse_unflyable(parts, times, wind, np.hypot(*(ends - starts)[:, :2].T))
     heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
     legs = tuple(_leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts)))
@@ -125,7 +125,7 @@ def fly_legs(
     return clocked(measure, still_air_times(points, vehicle, begin), len(wind.times) > 1)
 
 
-def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField) -> None:
+def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, lengths: FloatArray) -> None:
     """Raise if the wind, looked at closely, stops a leg that the graph's coarser wind let pass."""
     stopped = np.flatnonzero(~np.isfinite(parts.seconds))
     if len(stopped):
@@ -140,6 +140,12 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField) -
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"
                 " wind is not known there. Use a finer graph, a max_height below that level, or a higher wind.",
+                {"wind": len(stopped)},
+            )
+        if lengths[i] < 1e-6:
+            raise NoRouteError(
+                f"leg {i + 1} cannot be flown: it goes straight up or down, and in the wind there the vehicle cannot hold"
+                " its place. Use other layers, more airspeed, or another departure.",
                 {"wind": len(stopped)},
             )
         raise NoRouteError(

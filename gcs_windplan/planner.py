@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NoReturn
 
 import numpy as np
 
@@ -169,16 +170,9 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     """
     request = ready.request
     try:
-        found = find_route(ready, choice, begin)
+        found, spread = _best_route(ready, choice, begin)
     except NoRouteError as error:
         raise NoRouteError(f"{error}{_opens(ready, begin)}", error.cuts) from error
-    spread = spread_of(request, found.points, begin)
-    if spread is not None and choice.name == "time":
-        other = find_route(ready.in_the_mean(), choice, begin)
-        spread_of_other = spread_of(request, other.points, begin)
-        assert spread_of_other is not None
-        if spread_of_other.at(request.robust) < spread.at(request.robust):
-            found, spread = other, spread_of_other
     flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin)
     effort = Effort(
         ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
@@ -186,6 +180,36 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     )  # fmt: skip
     notes = (*_notes(request, ready.windy), *_waiting(ready, found, begin))
     return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, notes)
+
+
+def _best_route(ready: Ready, choice: CostChoice, begin: float) -> tuple[FoundRoute, Spread | None]:
+    """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
+    request = ready.request
+    if not request.members:
+        return find_route(ready, choice, begin), None
+    ways = [ready, ready.in_the_mean()] if choice.name == "time" else [ready]
+    candidates, error = [], None
+    for way in ways:
+        try:
+            found = find_route(way, choice, begin)
+        except NoRouteError as no_route:
+            error = error or no_route
+            continue
+        spread = spread_of(request, found.points, begin)
+        assert spread is not None
+        candidates.append((found, spread))
+    if not candidates:
+        assert error is not None
+        raise error
+    found, spread = min(candidates, key=lambda candidate: candidate[1].at(request.robust))
+    if not np.isfinite(spread.at(request.robust)):
+        able = len(spread.seconds) - spread.unflyable
+        raise NoRouteError(
+            f"the best route found can be flown in {able} of {len(spread.seconds)} members only, and `robust`"
+            f" {request.robust:g} asks for more: another departure, more airspeed, or a lower `robust`.",
+            {"wind": spread.unflyable},
+        )
+    return found, spread
 
 
 def _lay_veil(
@@ -233,8 +257,20 @@ def find_route(
         found.cost += float(np.sum(prices))
         found.graph_cost += cost.of_polyline(path.points)
         found.points = np.concatenate([found.points, shaped[1:]])
+        if not np.isfinite(times[-1]):
+            _refuse(ready.request, found.points, begin)
         found.arrival = float(times[-1])
     return found
+
+
+def _refuse(request: Request, points: FloatArray, begin: float) -> NoReturn:
+    """Raise `NoRouteError` for a route (n, 3) on which the wind, looked at closely, is worse than at the nodes."""
+    fly(points, request.frame, request.terrain, request.wind, request.vehicle, begin)  # says on which leg, if on one
+    raise NoRouteError(
+        "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"
+        " closely: a finer graph, more airspeed, another departure, or a lower `robust`.",
+        {"wind": 1},
+    )
 
 
 def _cost_between(ready: Ready, choice: CostChoice, start: FloatArray, goal: FloatArray, begin: float) -> LegCost:
@@ -306,9 +342,11 @@ def _opens(ready: Ready, begin: float) -> str:
 def _lasting(ready: Ready, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        return find_route(ready, CostChoice("time"), begin, _unshaped).arrival - begin
+        found = find_route(ready, CostChoice("time"), begin, _unshaped)
     except (NoRouteError, WindError):
         return float("inf")
+    spread = spread_of(ready.request, found.points, begin)
+    return found.arrival - begin if spread is None else spread.at(ready.request.robust)
 
 
 def _unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:

@@ -29,6 +29,18 @@ class Corridor(Steady):
 
 
 @dataclass(frozen=True)
+class Everywhere(Steady):
+    """The same wind along east everywhere."""
+
+    along: float
+    name: str = "everywhere"
+    resolution: float = 1000.0
+
+    def at(self, points, seconds=0.0):
+        return np.column_stack([np.full(len(points), self.along), *np.zeros((2, len(points)))])
+
+
+@dataclass(frozen=True)
 class Gate:
     """A gale from ahead that fills all the air and is over at once, linearly from `opens` [s] within a minute."""
 

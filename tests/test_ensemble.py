@@ -11,7 +11,7 @@ import pytest
 import gcs_windplan as gw
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.planner import Spread
-from tests.ensembles import Gate, divided, request
+from tests.ensembles import Corridor, Everywhere, Gate, divided, request
 
 
 def seconds_in(plan: gw.Plan, wind) -> float:
@@ -59,3 +59,14 @@ def test_where_waiting_pays_a_note_says_so():
 def test_where_no_way_is_open_the_error_says_when_one_will_be():
     with pytest.raises(gw.NoRouteError, match=r"leaving \d+ min later"):
         gw.plan_route(request(wind=Gate(opens=1800.0)))
+
+
+def test_a_route_that_too_few_members_can_fly_is_refused():
+    """Three of ten members have a gale all over: no route is good for nine of them."""
+    calm, gale = Corridor(2.0), Everywhere(-20.0)
+    members = (calm,) * 7 + (gale,) * 3
+    asked = replace(divided(0.7), members=members, wind=calm)
+    plan = gw.plan_route(asked)
+    assert plan.spread.unflyable == 3
+    with pytest.raises(gw.NoRouteError, match="no route|members only"):
+        gw.plan_route(replace(asked, robust=0.9))

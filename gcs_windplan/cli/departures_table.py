@@ -21,7 +21,7 @@ _BAR = 18  # characters of the longest time
 
 def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:
     """A row for each departure, the quickest one marked, and what the sweep took."""
-    flown = [one for one in found if one.seconds is not None]
+    flown = [one for one in found if one.feasible]
     best = min(flown, key=lambda one: one.seconds or 0.0, default=None)
     longest = max((one.seconds or 0.0 for one in flown), default=1.0)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
@@ -54,7 +54,7 @@ def _cells(one: Departure, ensemble: bool) -> list[str]:
 
 def _last(one: Departure, longest: float) -> str:
     """A bar as long as the flight, or why there is none."""
-    if one.seconds is None:
+    if not one.feasible or one.seconds is None:
         return "no: " + (one.reason or "").split(", and what leads on is ")[-1].split(". ")[0].removeprefix(
             "no route: "
         )

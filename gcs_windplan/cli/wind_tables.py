@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import astuple
 from textwrap import wrap
 
 import numpy as np
@@ -18,7 +19,7 @@ from gcs_windplan.wind.inventory import Inventory
 from gcs_windplan.wind.pairing import say_time
 from gcs_windplan.wind.sheets import Level
 from gcs_windplan.wind.sounding import Here, Row, Sounding, Spot
-from gcs_windplan.wind.spread import Spread, direction_from, spread_of, spread_of_directions
+from gcs_windplan.wind.spread import direction_from, spread_of, spread_of_directions
 
 _INDENT = 10  # characters
 _FILES = 10  # that are named one by one
@@ -153,17 +154,18 @@ def _wind_table(members: Sequence[int | None], *before: str) -> Table:
 
 
 def _add(table: Table, before: Sequence[str], members: Sequence[int | None], winds: FloatArray) -> None:
-    """A row a member; of many members the median, and the least and the most in brackets."""
-    columns = (winds[:, 0], winds[:, 1], np.hypot(winds[:, 0], winds[:, 1]))
+    """A row a member; of many members the median, the least and the most of each number."""
+    columns = [winds[:, 0], winds[:, 1], np.hypot(winds[:, 0], winds[:, 1])]
     directions = direction_from(winds)
+    names = [] if len(members) == 1 and members[0] is None else ["-" if m is None else str(m) for m in members]
     if len(members) > _SINGLY:
-        spreads = [*(_ranged(spread_of(column)) for column in columns), _ranged(spread_of_directions(directions), True)]
-        table.add_row(*before, f"all {len(members)}", *spreads)
-        return
-    for number, member in enumerate(members):
-        name = [] if len(members) == 1 and member is None else ["-" if member is None else str(member)]
+        spreads = [astuple(spread_of(column)) for column in columns]
+        columns = [np.array(spread) for spread in spreads]
+        directions = np.array(astuple(spread_of_directions(directions)))
+        names = [f"median of {len(members)}", "least", "most"]
+    for number in range(len(directions)):
         cells = [*(_number(column[number]) for column in columns), _number(directions[number], True)]
-        table.add_row(*(before if not number else [""] * len(before)), *name, *cells)
+        table.add_row(*(before if not number else [""] * len(before)), *names[number : number + 1], *cells)
 
 
 def _number(value: float, circular: bool = False) -> str:
@@ -172,11 +174,6 @@ def _number(value: float, circular: bool = False) -> str:
         return "-"
     rounded = round(float(value), 2)
     return f"{rounded % 360.0 if circular else rounded + 0.0:.2f}"
-
-
-def _ranged(spread: Spread, circular: bool = False) -> str:
-    median, least, most = (_number(value, circular) for value in (spread.median, spread.least, spread.most))
-    return f"{median} ({least} to {most})"
 
 
 def _level_cells(row: Row, ground: float) -> list[str]:
@@ -192,7 +189,8 @@ def _gusts(here: Here) -> list[str]:
         return []
     values = np.array(list(here.gusts.values()))
     if len(values) > _SINGLY:
-        return [f"gusts {_ranged(spread_of(values))} m/s"]
+        median, least, most = (_number(value) for value in astuple(spread_of(values)))
+        return [f"gusts {median} m/s, {least} to {most} m/s"]
     told = [_number(value) + ("" if member is None else f" (member {member})") for member, value in here.gusts.items()]
     return [f"gust{'s' if len(told) > 1 else ''} {', '.join(told)} m/s"]
 

@@ -16,7 +16,7 @@ def format_departures(request: Request, found: Sequence[Departure]) -> str:
     rows = [
         {
             "departure": one.moment.isoformat(),
-            "feasible": one.seconds is not None,
+            "feasible": one.feasible,
             "seconds": one.seconds,
             "length": one.length,
             "member_seconds": None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
@@ -10,9 +11,10 @@ from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 
 from gcs_windplan.errors import MissionFileError, Problem
-from gcs_windplan.spec.marks import MarkedError, Values
+from gcs_windplan.spec.marks import MarkedError, Marks, Values
 from gcs_windplan.spec.parsing import _compose, _order, _schema_problems, _yaml_problems
 from gcs_windplan.spec.section import Fields, Finding, Section
+from gcs_windplan.spec.units import SPEED
 from gcs_windplan.spec.values import (
     AIRSPEED,
     Acceleration,
@@ -22,6 +24,7 @@ from gcs_windplan.spec.values import (
     Coefficient,
     Label,
     Mass,
+    Measure,
     PositiveArea,
     PositiveNumber,
     PositivePower,
@@ -42,6 +45,7 @@ from gcs_windplan.vehicle import (
 )
 
 _LARGEST_FILE: Final = 1_000_000  # bytes
+_MEASURED: Final = Measure(SPEED, at_least=0)
 
 
 class BatteryModel(Section):
@@ -202,7 +206,7 @@ def parse_airframe(text: str, file: Path) -> Airframe:
 
     Raises `MissionFileError` with every problem, in the order of the lines.
     """
-    marks = _compose(text, file)
+    marks = _marks(text, file)
     try:
         values = Values(marks)
     except MarkedError as error:
@@ -219,6 +223,15 @@ def parse_airframe(text: str, file: Path) -> Airframe:
     if problems:
         raise MissionFileError(sorted(dict.fromkeys(problems), key=_order))
     return _airframe(model)
+
+
+def _marks(text: str, file: Path) -> Marks:
+    """What the text holds; the reader of mission files calls an empty one by its own name."""
+    try:
+        return _compose(text, file)
+    except MissionFileError as error:
+        named = [replace(one, message=one.message.replace("mission file", "airframe file")) for one in error.problems]
+        raise MissionFileError(named) from None
 
 
 def _airframe(model: AirframeModel) -> Airframe:
@@ -276,7 +289,7 @@ def _measured_airspeeds(power: Fields) -> list[float | None]:
     rows = power.get("measured")
     if not isinstance(rows, list):
         return []
-    return [_AIRSPEED.read_or_none(row.get("airspeed")) if isinstance(row, dict) else None for row in rows]
+    return [_MEASURED.read_or_none(row.get("airspeed")) if isinstance(row, dict) else None for row in rows]
 
 
 def _whole_file(file: Path, message: str) -> MissionFileError:

@@ -69,9 +69,7 @@ ENERGY: Final = Quantity(
 )
 POWER: Final = Quantity("a power", "W", "450 W", MappingProxyType({"W": 1.0, "kW": 1e3}))
 DENSITY: Final = Quantity("a density", "kg/m3", "1.225 kg/m3", MappingProxyType({"kg/m3": 1.0, "kg/m³": 1.0}))
-ACCELERATION: Final = Quantity(
-    "an acceleration", "m/s2", "2.5 m/s2", MappingProxyType({"m/s2": 1.0, "m/s²": 1.0})
-)
+ACCELERATION: Final = Quantity("an acceleration", "m/s2", "2.5 m/s2", MappingProxyType({"m/s2": 1.0, "m/s²": 1.0}))
 QUANTITIES: Final = (SPEED, LENGTH, ANGLE, TIME, AREA, MASS, ENERGY, POWER, DENSITY, ACCELERATION)
 
 _WRITTEN: Final = re.compile(

@@ -56,7 +56,9 @@ class Airframe:
         if self.mass != self.power.mass:
             text = f"{self.mass:g} kg fly, but the power is that of {self.power.mass:g} kg; make both the same"
             raise InputError(Problem(text, "mass"))
-        if not self.vehicle.airspeed <= self.maximum_airspeed < math.inf:
+        if not math.isfinite(self.maximum_airspeed):
+            raise InputError(Problem(f"{self.maximum_airspeed} m/s is no largest airspeed", "maximum_airspeed"))
+        if self.maximum_airspeed < self.vehicle.airspeed:
             text = f"{self.maximum_airspeed:g} m/s is less than the cruise at {self.vehicle.airspeed:g} m/s"
             raise InputError(Problem(text, "maximum_airspeed"))
         if not (math.isfinite(self.acceleration) and self.acceleration > 0):

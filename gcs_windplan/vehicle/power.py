@@ -70,7 +70,8 @@ def energy_per_metre(
     """Joules per metre over ground in level flight against a head wind [m/s]; infinite without way over ground."""
     over_ground = np.asarray(airspeed, dtype=np.float64) - head_wind
     watts = model.watts(airspeed, 0.0, density)
-    return np.asarray(np.divide(watts, over_ground, out=np.full(watts.shape, math.inf), where=over_ground > 0))
+    with np.errstate(over="ignore"):  # next to no way: infinite as well
+        return np.asarray(np.divide(watts, over_ground, out=np.full(watts.shape, math.inf), where=over_ground > 0))
 
 
 def flow(airspeed: FloatArray | float, climb_rate: FloatArray | float, density: FloatArray | float) -> Flow:

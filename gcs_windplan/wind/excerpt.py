@@ -105,7 +105,9 @@ def winds_by_level(
     found = {} if planned is None else dict.fromkeys((*planned.above, *planned.beyond), planned)
     for level in sorted({pair.level for pair in pair_up(sheets)} - set(found)):
         with suppress(WindError):
-            found[level] = choose([_of_level(one, level) for one in catalogues], members, span, _ANY_HEIGHT)
+            winds = choose([_of_level(one, level) for one in catalogues], members, span, _ANY_HEIGHT)
+            if planned is None or winds.times == planned.times:
+                found[level] = winds
     if not found:
         raise refused
     return found, planned

@@ -114,9 +114,9 @@ def spot_at(
     moment = moment_in(catalogues, asked)
     winds = choose(catalogues, members_for(catalogues, choice), Span(moment), None)
     excerpt = Excerpt(winds, part_at(winds.grid, place), moment)
+    fields = excerpt.assembly.made("").fields
     here = here_of(excerpt, place)
     spot = _unblown(excerpt, here, altitude)
-    fields = excerpt.assembly.made("").fields
     found = np.array([_blown(one, spot, here) for one in fields])
     if not np.isfinite(found).all():
         raise WindError(_unknown(spot, here, altitude))
@@ -194,6 +194,8 @@ def _unblown(excerpt: Excerpt, here: Here, altitude: Altitude) -> Spot:
     over_ground = altitude.above_ground and not known
     height = altitude.metres + (base if altitude.above_ground else 0.0)
     levels = _ladder(excerpt, here.ground, over_ground)
+    if not levels:
+        raise WindError(f"all its levels lie below its own ground there, {here.ground:.0f} m above mean sea level")
     lower, upper = _about(levels, height)
     return Spot(
         here=here,
@@ -252,4 +254,6 @@ def _unknown(spot: Spot, here: Here, altitude: Altitude) -> str:
     when = "" if here.moment is None else f" at {say_time(here.moment)}"
     if spot.lower is None:
         return f"{altitude} is below its lowest level ({at}){when}, and it has no terrain that tells how far down to go"
+    if spot.height <= height:
+        return f"{altitude} is above its highest level at one of the nodes about the place ({at}){when}"
     return f"{altitude} is above its highest level ({at}){when}"

@@ -84,7 +84,7 @@ def _of_message(message: int) -> Iterator[Value]:
     nodes = [eccodes.codes_get_double_array(message, key) for key in ("latitudes", "longitudes", "values")]
     for latitude, longitude, value in zip(*nodes, strict=True):
         scaled = value / 9.80665 if quantity == "height" else value
-        yield Value(quantity, f"{level} hPa", time, member, latitude, _turned(longitude), scaled)
+        yield Value(quantity, f"{level} hPa", time, member, float(latitude), _turned(float(longitude)), scaled)
 
 
 def _of_netcdf(path: Path) -> Iterator[Value]:

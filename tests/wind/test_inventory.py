@@ -88,7 +88,8 @@ EXPECTED: dict[str, tuple[Any, ...]] = {
         "NetCDF4", "", 0, "m s**-1", (97, 101), (30, 54, -100, -75), "u, v, 37 levels from 1000 hPa to 1 hPa",
     ),
     "openmeteo_slc_hourly_pressure_levels.json": (
-        "JSON", "Open-Meteo", 0, "mp/h", (1, 1), (40.764, 40.764, -111.981, -111.981), "8 levels from 10 m above ground",
+        "JSON", "Open-Meteo", 0, "mp/h", (1, 1), (40.764, 40.764, -111.981, -111.981),
+        "8 levels from 10 m above ground",
     ),
 }  # fmt: skip
 
