@@ -12,6 +12,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cores import available_cores
 from gcs_windplan.cost import CostChoice
+from gcs_windplan.energy import leg_energies
 from gcs_windplan.errors import NoRouteError, WindError
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.planner import Ready, Spread, find_route, prepare, spread_of
@@ -26,7 +27,7 @@ _SAMPLES = 8  # of the wind along each leg
 class Departure:
     """One departure: how long the best route takes, and what wind it meets.
 
-    `seconds` and `length` [m] of the route, None where there is none. `spread` is the same route in every member of an
+    `seconds`, `length` [m] and `energy` [J] (where the vehicle's power is known) of the route, None where there is none. `spread` is the same route in every member of an
     ensemble. `reason` says why it cannot be flown, or not in as many members as the request's `robust` asks for. `wind` and `gust` are the strongest along the route in any member [m/s]; the
     gust is None where the forecast tells none. `worked` is the processor's time that it took [s].
     """
@@ -34,6 +35,7 @@ class Departure:
     moment: datetime
     seconds: float | None = None
     length: float | None = None
+    energy: float | None = None
     spread: Spread | None = None
     wind: float | None = None
     gust: float | None = None
@@ -96,11 +98,20 @@ class _Job:
         length = float(np.sum(np.linalg.norm(np.diff(found.points, axis=0), axis=1)))
         spread = spread_of(self.request, found.points, begin)
         wind, gust = self._strongest(found.points, begin)
+        energy = self._energy(found.points, begin)
         reason = None
         if spread is not None and not np.isfinite(spread.at(self.request.robust)):
             reason = f"flown in {len(spread.seconds) - spread.unflyable} of {len(spread.seconds)} members only"
         worked = time.process_time() - since
-        return Departure(moment, found.arrival - begin, length, spread, wind, gust, reason, worked)
+        return Departure(moment, found.arrival - begin, length, energy, spread, wind, gust, reason, worked)
+
+    def _energy(self, points: FloatArray, begin: float) -> float | None:
+        """The energy en route in the mean wind [J]."""
+        request = self.request
+        if request.power is None:
+            return None
+        _, times = fly_legs(points, request.wind, request.vehicle, begin)
+        return float(leg_energies(points, times, request.wind, request.vehicle, request.power).sum())
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

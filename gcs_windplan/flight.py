@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import LegIntegrals, clocked, integrate, still_air_times
+from gcs_windplan.energy import leg_energies
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Terrain
-from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle import PowerModel, Vehicle, air_density
 from gcs_windplan.wind.field import WindField
 
 _NEAR_THE_END = 3600.0  # [s] a leg that stops so shortly before the forecast's end stops because of it
@@ -48,7 +49,7 @@ class Leg:
     Angles in degrees from true north, lengths in m, speeds in m/s. `distance` is level, `length` along the slope,
     `climb` the gain in height. `ground_speed` is the level mean over the leg. `wind_along` is positive from behind,
     `wind_across` from left to right, both means. `clearance` is the smallest and `height` the largest height above
-    ground.
+    ground. `energy` [J] is known where the vehicle's power is.
     """
 
     number: int
@@ -63,6 +64,7 @@ class Leg:
     seconds: float
     clearance: float
     height: float
+    energy: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,8 @@ class Totals:
     """The sum of all legs: lengths and heights in m, time in s.
 
     The take-off to the first waypoint and the landing under the last one are apart, straight up and down at the
-    vehicle's rates. The landing counts only for a mission that lands there.
+    vehicle's rates. The landing counts only for a mission that lands there. Energies [J] are known where the vehicle's
+    power is.
     """
 
     seconds: float
@@ -82,6 +85,9 @@ class Totals:
     height: float
     takeoff_seconds: float
     landing_seconds: float
+    energy: float | None = None
+    takeoff_energy: float | None = None
+    landing_energy: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +100,13 @@ class Flight:
 
 
 def fly(
-    points: FloatArray, frame: LocalFrame, terrain: Terrain, wind: WindField, vehicle: Vehicle, begin: float = 0.0
+    points: FloatArray,
+    frame: LocalFrame,
+    terrain: Terrain,
+    wind: WindField,
+    vehicle: Vehicle,
+    begin: float = 0.0,
+    power: PowerModel | None = None,
 ) -> Flight:
     """Fly a polyline (n, 3): east, north, height above mean sea level [m], from `begin` on [s since departure].
 
@@ -107,7 +119,10 @@ def fly(
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
     legs = tuple(_leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts)))
     waypoints = _waypoints(points, frame, terrain, parts.seconds)
-    return Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
+    flight = Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
+    if power is None:
+        return flight
+    return _with_energy(flight, leg_energies(points, times, wind, vehicle, power), vehicle, power)
 
 
 def fly_legs(
@@ -179,6 +194,17 @@ def _leg(i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, c
         clearance=float(heights[0]),
         height=float(heights[1]),
     )
+
+
+def _with_energy(flight: Flight, energies: FloatArray, vehicle: Vehicle, power: PowerModel) -> Flight:
+    """The flight with the energy of its legs (n,) and of its vertical ends [J]."""
+    totals, ends = flight.totals, (flight.waypoints[0].altitude, flight.waypoints[-1].altitude)
+    airspeed = 0.0 if vehicle.hovers else vehicle.airspeed
+    up = float(power.watts(airspeed, vehicle.climb, air_density(ends[0]))) * totals.takeoff_seconds
+    down = float(power.watts(airspeed, -vehicle.descent, air_density(ends[1]))) * totals.landing_seconds
+    legs = tuple(replace(leg, energy=float(joules)) for leg, joules in zip(flight.legs, energies, strict=True))
+    total = math.fsum(energies)
+    return replace(flight, legs=legs, totals=replace(totals, energy=total, takeoff_energy=up, landing_energy=down))
 
 
 def _waypoints(points: FloatArray, frame: LocalFrame, terrain: Terrain, seconds: FloatArray) -> tuple[Waypoint, ...]:

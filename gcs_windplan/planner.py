@@ -15,6 +15,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cost import CostChoice, LegCost, rank_of
+from gcs_windplan.energy import leg_energies
 from gcs_windplan.errors import NoRouteError, RequestError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly, fly_legs
 from gcs_windplan.request import Request, Roadmap
@@ -52,13 +53,19 @@ class Effort:
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """How long the route takes in each member of an ensemble [s]; infinite where one cannot fly it."""
+    """What the route takes in each member of an ensemble: seconds, infinite where one cannot fly it, and energy [J],
+    where the vehicle's power is known."""
 
     seconds: tuple[float, ...]
+    energies: tuple[float, ...] = ()
 
     def at(self, quantile: float) -> float:
         """The time of the member at a quantile, from the fastest up [s]."""
         return sorted(self.seconds)[rank_of(quantile, len(self.seconds))]
+
+    def energy_at(self, quantile: float) -> float:
+        """The energy of the member at a quantile, from the thriftiest up [J]."""
+        return sorted(self.energies)[rank_of(quantile, len(self.energies))]
 
     @property
     def unflyable(self) -> int:
@@ -173,7 +180,7 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
         found, spread = _best_route(ready, choice, begin)
     except NoRouteError as error:
         raise NoRouteError(f"{error}{_opens(ready, begin)}", error.cuts) from error
-    flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin)
+    flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power)
     effort = Effort(
         ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
         found.shaping_seconds,
@@ -285,8 +292,13 @@ def spread_of(request: Request, points: FloatArray, begin: float = 0.0) -> Sprea
     """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble."""
     if not request.members:
         return None
-    arrivals = [fly_legs(points, member, request.vehicle, begin)[1][-1] for member in request.members]
-    return Spread(tuple(float(arrival - begin) for arrival in arrivals))
+    times = [fly_legs(points, member, request.vehicle, begin)[1] for member in request.members]
+    energies = []
+    if request.power is not None:
+        for member, passed in zip(request.members, times, strict=True):
+            joules = leg_energies(points, passed, member, request.vehicle, request.power).sum()
+            energies.append(float(joules) if np.isfinite(joules) else float("inf"))
+    return Spread(tuple(float(passed[-1] - begin) for passed in times), tuple(energies))
 
 
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:

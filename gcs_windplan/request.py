@@ -12,7 +12,7 @@ from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import Problem
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.terrain import Obstacles, Terrain
-from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle import Airframe, PowerModel, Vehicle
 from gcs_windplan.veil import Airspace, CollisionTest
 from gcs_windplan.wind.field import WindField
 
@@ -88,7 +88,7 @@ class Request:
     point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into the mission
     beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for the `robust`
     quantile of its legs' cost over them. `gusts` are the
-    forecast's, one field a member, where it tells any. `locate` puts file and line to a problem that names a field.
+    forecast's, one field a member, where it tells any. With an `airframe` the energy is known. `locate` puts file and line to a problem that names a field.
     """
 
     name: str
@@ -118,12 +118,18 @@ class Request:
     members: tuple[WindField, ...] = ()
     robust: float = 0.5
     gusts: tuple[WindField, ...] = ()
+    airframe: Airframe | None = None
     locate: Callable[[Problem], Problem] = lambda problem: problem
 
     @property
     def sites(self) -> tuple[Site, ...]:
         """Start, vias and goal, in the order they are passed."""
         return (self.start, *self.via, self.goal)
+
+    @property
+    def power(self) -> PowerModel | None:
+        """What the vehicle draws, where its airframe is known."""
+        return None if self.airframe is None else self.airframe.power
 
     @property
     def places_beside(self) -> tuple[Site, ...]:

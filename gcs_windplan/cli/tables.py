@@ -48,6 +48,7 @@ def summary_lines(plan: Plan) -> list[str]:
     totals, effort = plan.totals, plan.effort
     return [
         *_head(plan),
+        *_energy(plan),
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
         f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
@@ -70,6 +71,28 @@ def _head(plan: Plan) -> list[str]:
             f" min, 10 - 90 % {low} - {high} min{stopped}; the legs above are in their mean"
         )
     return lines
+
+
+def _energy(plan: Plan) -> list[str]:
+    """What the route takes from the battery, where that is known."""
+    totals, airframe = plan.totals, plan.request.airframe
+    if airframe is None or totals.energy is None or totals.takeoff_energy is None:
+        return []
+    ends = totals.takeoff_energy + (totals.landing_energy or 0.0) * (plan.request.finish == "land")
+    total, usable = totals.energy + ends, airframe.battery.usable_energy
+    line = (
+        f"energy {watt_hours(totals.energy)} Wh en route, take-off{' and landing' * (plan.request.finish == 'land')}"
+        f" {watt_hours(ends)} Wh more: {100 * total / usable:.0f} % of the usable {watt_hours(usable)} Wh ({airframe.name})"
+    )
+    if plan.spread is not None:
+        low, median, high = (watt_hours(plan.spread.energy_at(quantile)) for quantile in (0.1, 0.5, 0.9))
+        line += f"; en route in the members: median {median} Wh, 10 - 90 % {low} - {high} Wh"
+    return [line]
+
+
+def watt_hours(joules: float) -> str:
+    """An energy [J] in Wh, which may be infinite."""
+    return f"{joules / 3600:.1f}" if joules < float("inf") else "never"
 
 
 def spread_clock(seconds: float) -> str:

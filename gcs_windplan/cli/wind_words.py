@@ -70,9 +70,17 @@ def grid_line(grid: GridFacts) -> str:
 def beside_line(inventory: Inventory) -> str:
     """What else there is that planning makes use of."""
     there = {holding.quantity for holding in inventory.holdings}
-    have = [word for quantity, word in _BESIDE if quantity in there]
-    lack = [word for quantity, word in _BESIDE if quantity not in there]
-    return "; ".join(part for part in (", ".join(have), f"no {', no '.join(lack)}" if lack else "") if part)
+    counted = {level.kind for holding in inventory.holdings for level in holding.levels}
+    worked_out = "height" not in there and there >= {"temperature", "pressure"}
+    useful = [
+        (quantity, word)
+        for quantity, word in _BESIDE
+        if quantity != "height" or (counted & {"pressure", "model"} and not worked_out)
+    ]
+    have = [word for quantity, word in useful if quantity in there]
+    have += ["temperature and pressure, for the heights of its levels"] if worked_out else []
+    lack = [f"no {word}" for quantity, word in useful if quantity not in there]
+    return "; ".join(", ".join(words) for words in (have, lack) if words)
 
 
 def missing_line(count: Count) -> str:

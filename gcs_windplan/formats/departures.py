@@ -11,6 +11,11 @@ if TYPE_CHECKING:
     from gcs_windplan.request import Request
 
 
+def _finite(numbers: Sequence[float]) -> list[float | None]:
+    """The numbers, None for those that are infinite."""
+    return [number if number < float("inf") else None for number in numbers]
+
+
 def format_departures(request: Request, found: Sequence[Departure]) -> str:
     """The departures as JSON: SI units, times in UTC; members that cannot fly it have null seconds."""
     rows = [
@@ -19,6 +24,8 @@ def format_departures(request: Request, found: Sequence[Departure]) -> str:
             "feasible": one.feasible,
             "seconds": one.seconds,
             "length": one.length,
+            "energy": one.energy,
+            "member_energies": _finite(one.spread.energies) if one.spread is not None else None,
             "member_seconds": None
             if one.spread is None
             else [s if s < float("inf") else None for s in one.spread.seconds],

@@ -84,6 +84,12 @@ class MultirotorModel(Section):
     c5: Coefficient = Field(default=0.0, description="lift in forward flight, kg/m")
     density: AirDensity = Field(default=1.225, description="of the air in which the coefficients were found")
 
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """Hovering that takes no power."""
+        if fields.get("k1") == 0 and fields.get("c2") == 0:
+            yield Finding(("c2",), "cannot be 0 with k1 at 0 as well; hovering takes power")
+
 
 class FixedWingModel(Section):
     """A wing with a parabolic drag polar, and a propeller."""

@@ -16,6 +16,7 @@ from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.request import Export, FenceArea, Request, Roadmap, Site, Uniform
 from gcs_windplan.siting import choose_margin
+from gcs_windplan.spec.airframe import read_airframe
 from gcs_windplan.spec.areas import AreaModel
 from gcs_windplan.spec.model import GraphModel, MissionModel
 from gcs_windplan.spec.outlines import fence_area_of, prism_of
@@ -25,7 +26,7 @@ from gcs_windplan.spec.terrain import build_obstacles, build_terrain
 from gcs_windplan.spec.wind import DAY, Departure, build_wind
 from gcs_windplan.spec.world import SiteModel
 from gcs_windplan.terrain import Extent
-from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle import Airframe, Vehicle
 from gcs_windplan.veil import Airspace, Prism
 
 _T = TypeVar("_T")
@@ -52,6 +53,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
     ground = _with(area, beside)
     terrain = _placed(document, "terrain", lambda: build_terrain(document, frame, ground))
     problems: list[Problem] = []
+    airframe = _collected(document, "vehicle.airframe", problems, lambda: _airframe(document))
     obstacles = _collected(document, "obstacles", problems, lambda: build_obstacles(document, frame, terrain))
     airspace = Airspace(
         _prisms(document, "keep_out", model.keep_out, frame, problems),
@@ -67,7 +69,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         frame=frame,
         terrain=terrain,
         wind=winds.wind,
-        vehicle=Vehicle(**model.vehicle.model_dump()),
+        vehicle=_vehicle(model, airframe),
         start=sites[0],
         goal=sites[-1],
         via=tuple(sites[1:-1]),
@@ -90,8 +92,24 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         members=winds.members,
         gusts=winds.gusts,
         robust=0.5 if model.robust is None else model.robust,
+        airframe=airframe,
         locate=_locator(document),
     )
+
+
+def _airframe(document: MissionDocument) -> Airframe | None:
+    """The airframe that the mission names."""
+    name = document.model.vehicle.airframe
+    return None if name is None else read_airframe(document.beside(name))
+
+
+def _vehicle(model: MissionModel, airframe: Airframe | None) -> Vehicle:
+    """The vehicle: the airframe's, but for what the mission file itself says."""
+    written = model.vehicle.model_dump(exclude={"airframe"})
+    if airframe is None:
+        return Vehicle(**written)
+    own = {name: written[name] for name in model.vehicle.model_fields_set if name in written}
+    return replace(airframe.vehicle, **own)
 
 
 def _graph(model: GraphModel) -> Uniform | Roadmap:

@@ -14,6 +14,7 @@ from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one
 from gcs_windplan.spec.values import (
     WEIGHT,
     Airspeed,
+    FileName,
     FileStem,
     Flag,
     Height,
@@ -29,17 +30,28 @@ from gcs_windplan.spec.world import ObstacleModel, SiteModel, TerrainModel, Wind
 
 
 class VehicleModel(Section):
-    """The vehicle and its autopilot."""
+    """The vehicle and its autopilot; what is not written here is the airframe's, where one is named."""
 
+    airframe: FileName | None = Field(
+        default=None, description="a file with its speeds, mass, battery and power; relative to this file"
+    )
     type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
     autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="firmware the mission is for")
-    airspeed: Airspeed = Field(description="cruise speed through the air", examples=["12 m/s"])
+    airspeed: Airspeed | None = Field(
+        default=None, description="cruise speed through the air; needed without an `airframe`", examples=["12 m/s"]
+    )
     climb: PositiveSpeed = Field(default=2.5, description="largest speed upwards")
     descent: PositiveSpeed = Field(default=1.5, description="largest speed downwards")
     speed_model: Literal["triangle", "paper"] = Field(
         default="triangle",
         description="ground speed in wind: the exact wind triangle, or the paper's equation (12)",
     )
+
+    @classmethod
+    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+        """No speed from anywhere."""
+        if "airspeed" not in fields and "airframe" not in fields:
+            yield Finding(("airspeed",), "is missing; add it, for example 'airspeed: 12 m/s'", at_key=True)
 
 
 class CostModel(Section):

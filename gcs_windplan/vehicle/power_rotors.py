@@ -10,6 +10,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.constants import STANDARD_GRAVITY
+from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.vehicle.air import SEA_LEVEL_DENSITY
 from gcs_windplan.vehicle.power import flow, require
 
@@ -95,6 +96,8 @@ class Multirotor:
 
     def __post_init__(self) -> None:
         require(self, ("mass", "k2", "density"), ("k1", "c2", "c4", "c5"))
+        if self.k1 == self.c2 == 0:
+            raise InputError(Problem("cannot be 0 with k1 at 0 as well: hovering takes power", "power.c2"))
 
     def airspeeds(self, density: float = SEA_LEVEL_DENSITY) -> tuple[float, float]:
         """From hover on, without end."""

@@ -150,12 +150,14 @@ class Excerpt:
 
     def gust(self, member: int | None) -> FloatArray | None:
         """The gusts (rows, columns) [m/s], None where the files have none."""
-        read = []
+        read: list[FloatArray | None] = []
         for time, weight in self._weighted_times:
             sheets = [s for s in self.winds.others if (s.quantity, s.time, s.member) == ("gust", time, member)]
             if weight and not sheets:
                 return None
-            read.append(self.assembly._read(sheets[0]) if weight else None)
+            runs = {pair.first.run for (at, of, _), pair in self.winds.pairs.items() if (at, of) == (time, member)}
+            newest = max(sheets, key=lambda sheet: (sheet.run in runs, sheet.run or 0.0)) if weight else None
+            read.append(None if newest is None else self.assembly._read(newest))
         return self._at_moment(read)
 
     @cached_property

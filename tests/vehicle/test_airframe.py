@@ -31,8 +31,9 @@ def test_every_airframe_reads_and_flies(vehicles: dict[str, Airframe]) -> None:
     assert sorted(vehicles) == ["fixed_wing", "large_multirotor", "small_quadcopter"]
     for airframe in vehicles.values():
         speeds = np.linspace(airframe.vehicle.airspeed, airframe.maximum_airspeed, 20)
-        watts = airframe.power.watts(speeds[:, None], [-airframe.vehicle.descent, 0.0, airframe.vehicle.climb])
-        assert np.all(watts > 0)
+        rates = np.array([-airframe.vehicle.descent, 0.0, airframe.vehicle.climb])
+        down, level, up = airframe.power.watts(speeds, rates[:, None])
+        assert np.all((down >= 0) & (down < level) & (level < up) & (up < math.inf))
         minutes = airframe.battery.energy_to_plan_with / float(airframe.power.watts(speeds[0], 0.0)) / 60
         assert 5 < minutes < 120
 

@@ -143,3 +143,5 @@ def test_every_wrong_coefficient_is_named() -> None:
     ]
     with pytest.raises(InputError, match=r"power\.k2: must be above 0, not 0"):
         replace(LIU, k2=0.0)
+    with pytest.raises(InputError, match=r"power\.c2: cannot be 0 with k1 at 0 as well"):
+        replace(LIU, k1=0.0, c2=0.0)

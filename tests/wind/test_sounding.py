@@ -305,6 +305,23 @@ def test_gusts(tmp_path: Path) -> None:
     assert _spot(path, Altitude(10.0, True)).here.gusts == {None: pytest.approx(17.0)}
 
 
+def test_of_two_runs_gust_and_wind_are_of_the_newest(tmp_path: Path) -> None:
+    path = tmp_path / "runs.grib2"
+    path.write_bytes(
+        b"".join(
+            message(name, value, dataTime=time, stepRange=step, **keys)
+            for time, step, speed, gust in ((0, 12, 5.0, 99.0), (1200, 0, 7.0, 12.0))
+            for name, value, keys in (
+                ("u", speed, TEN_METRES), ("v", 0.0, TEN_METRES),
+                ("gust", gust, {"typeOfLevel": "surface", "level": 0}),
+            )
+        )
+    )  # fmt: skip
+    found = _sounding(path, GeoPoint(51.0, 9.0))
+    assert found.rows[0].winds[0, 0] == pytest.approx(7.0, abs=ONE_CM_PER_SECOND)
+    assert found.here.gusts[None] == pytest.approx(12.0, abs=ONE_CM_PER_SECOND)
+
+
 @pytest.mark.parametrize(
     "place", [GeoPoint(90.0, 0.0), GeoPoint(-90.0, 77.0), GeoPoint(0.0, -180.0), GeoPoint(0.0, 179.9)]
 )

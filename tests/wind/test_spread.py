@@ -9,8 +9,9 @@ from gcs_windplan.wind.spread import direction_from, spread_of, spread_of_direct
 
 
 @pytest.mark.parametrize(
-    ("u", "v", "direction"), [(9.0, 0.0, 270.0), (0.0, 9.0, 180.0), (-1.0, 0.0, 90.0), (0.0, -3.0, 0.0), (1.0, 1.0, 225.0)]
-)  # fmt: skip
+    ("u", "v", "direction"),
+    [(9.0, 0.0, 270.0), (0.0, 9.0, 180.0), (-1.0, 0.0, 90.0), (0.0, -3.0, 0.0), (1.0, 1.0, 225.0)],
+)
 def test_directions_are_where_the_wind_comes_from(u: float, v: float, direction: float) -> None:
     assert direction_from(np.array([[u, v]]))[0] == pytest.approx(direction)
 
