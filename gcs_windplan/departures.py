@@ -27,9 +27,11 @@ _SAMPLES = 8  # of the wind along each leg
 class Departure:
     """One departure: how long the best route takes, and what wind it meets.
 
-    `seconds`, `length` [m] and `energy` [J] (where the vehicle's power is known) of the route, None where there is none. `spread` is the same route in every member of an
-    ensemble. `reason` says why it cannot be flown, or not in as many members as the request's `robust` asks for. `wind` and `gust` are the strongest along the route in any member [m/s]; the
-    gust is None where the forecast tells none. `worked` is the processor's time that it took [s].
+    `seconds`, `length` [m] and `energy` [J] (where the vehicle's power is known) of the route, None where there is
+    none. `spread` is the same route in every member of an ensemble. `reason` says why it cannot be flown, or not in as
+    many members as the request's `robust` asks for, or not with the battery. `wind` and `gust` are the strongest along
+    the route in any member [m/s]; the gust is None where the forecast tells none. `worked` is the processor's time that
+    it took [s].
     """
 
     moment: datetime
@@ -101,7 +103,8 @@ class _Job:
         energy = self._energy(found.points, begin)
         reason = None
         if spread is not None and not np.isfinite(spread.at(self.request.robust)):
-            reason = f"flown in {len(spread.seconds) - spread.unflyable} of {len(spread.seconds)} members only"
+            reason = f"only {len(spread.seconds) - spread.unflyable} of {len(spread.seconds)} members"
+        reason = reason or self._too_much(energy)
         worked = time.process_time() - since
         return Departure(moment, found.arrival - begin, length, energy, spread, wind, gust, reason, worked)
 
@@ -112,6 +115,13 @@ class _Job:
             return None
         _, times = fly_legs(points, request.wind, request.vehicle, begin)
         return float(leg_energies(points, times, request.wind, request.vehicle, request.power).sum())
+
+    def _too_much(self, energy: float | None) -> str | None:
+        """What to say of an energy en route that the battery does not hold."""
+        airframe = self.request.airframe
+        if airframe is None or energy is None or energy <= airframe.battery.usable_energy:
+            return None
+        return f"takes {energy / 3600:.0f} of {airframe.battery.usable_energy / 3600:.0f} Wh"
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

@@ -26,7 +26,8 @@ def leg_energies(
     vectors = np.diff(points, axis=0)
     share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     places = points[:-1, None] + share[None, :, None] * vectors[:, None]
-    lasting = np.diff(times)
+    with np.errstate(invalid="ignore"):  # from the first leg on that cannot be flown, times are infinite
+        lasting = np.diff(times)
     flyable = np.isfinite(lasting)
     when = np.where(flyable, times[:-1], 0.0)[:, None] + share[None] * np.where(flyable, lasting, 0.0)[:, None]
     latest = float(wind.times[-1]) if len(wind.times) > 1 else np.inf

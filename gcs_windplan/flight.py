@@ -159,8 +159,8 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
             )
         if lengths[i] < 1e-6:
             raise NoRouteError(
-                f"leg {i + 1} cannot be flown: it goes straight up or down, and in the wind there the vehicle cannot hold"
-                " its place. Use other layers, more airspeed, or another departure.",
+                f"leg {i + 1} cannot be flown: it goes straight up or down, and in the wind there the vehicle cannot"
+                " hold its place. Use other layers, more airspeed, or another departure.",
                 {"wind": len(stopped)},
             )
         raise NoRouteError(

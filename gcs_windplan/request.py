@@ -87,8 +87,8 @@ class Request:
     returns at the end flies home at `return_height` above home [m], or higher if it is; or to the nearest `rally`
     point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into the mission
     beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for the `robust`
-    quantile of its legs' cost over them. `gusts` are the
-    forecast's, one field a member, where it tells any. With an `airframe` the energy is known. `locate` puts file and line to a problem that names a field.
+    quantile of its legs' cost over them. `gusts` are the forecast's, one field a member, where it tells any. With an
+    `airframe` the energy is known. `locate` puts file and line to a problem that names a field.
     """
 
     name: str

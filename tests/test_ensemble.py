@@ -68,5 +68,5 @@ def test_a_route_that_too_few_members_can_fly_is_refused():
     asked = replace(divided(0.7), members=members, wind=calm)
     plan = gw.plan_route(asked)
     assert plan.spread.unflyable == 3
-    with pytest.raises(gw.NoRouteError, match="no route|members only"):
+    with pytest.raises(gw.NoRouteError, match=r"no route|members only"):
         gw.plan_route(replace(asked, robust=0.9))

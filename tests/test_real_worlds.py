@@ -137,6 +137,6 @@ def test_over_the_big_butte_ten_metre_winds_are_carried_up_by_the_law(shared_dat
     request = found.request
     ground = np.array([[w.east, w.north, 0.0] for w in found.waypoints])
     ground[:, 2] = request.terrain.heights_at(ground)
-    low, high = (request.wind.at(ground + (0.0, 0.0, height)) for height in (10.0, 100.0))
+    low, high = (request.wind.at(ground + np.array([0.0, 0.0, height])) for height in (10.0, 100.0))
     np.testing.assert_allclose(high, low * np.log(1000) / np.log(100), atol=1e-9)
     assert np.hypot(low[:, 0], low[:, 1]).min() > 0.5

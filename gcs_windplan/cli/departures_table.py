@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich import box
 from rich.table import Table
 
-from gcs_windplan.cli.tables import make_console, spread_clock, watt_hours
+from gcs_windplan.cli.tables import make_console, spread_clock
 from gcs_windplan.cores import available_cores
 from gcs_windplan.flight import clock
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gcs_windplan.departures import Departure
     from gcs_windplan.request import Request
 
-_BAR = 18  # characters of the longest time
+_BAR = 14  # characters of the longest time
 
 
 def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:
@@ -25,15 +25,16 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
     best = min(flown, key=lambda one: one.seconds or 0.0, default=None)
     longest = max((one.seconds or 0.0 for one in flown), default=1.0)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
-    table.add_column("departure UTC", no_wrap=True)
+    table.add_column("departure UTC", min_width=11)
     ensemble, known = bool(request.members), request.power is not None
-    names = ["time min", *(["10 - 90 %", "flown in"] if ensemble else []), *([f"Wh{' (90 %)' * ensemble}"] if known else []), "km", "wind m/s", "gust m/s"]
-    for name in names:
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("")
+    spread = {"10 - 90 %": 13, "flown in": 5} if ensemble else {}
+    energy = {f"Wh{' (90 %)' * ensemble}": 11} if known else {}
+    for name, width in {"time min": 5, **spread, **energy, "wind m/s": 4, "gust m/s": 4}.items():
+        table.add_column(name, justify="right", min_width=width)
+    table.add_column("", no_wrap=True)
     for one in found:
         mark = "  best" if one is best else ""
-        table.add_row(f"{one.moment:%Y-%m-%d %H:%M}", *_cells(one, ensemble, known), _last(one, longest) + mark)
+        table.add_row(f"{one.moment:%m-%d %H:%M}", *_cells(one, ensemble, known), _last(one, longest) + mark)
     console = make_console()
     console.print(table)
     for line in _summary(request, found, flown, best, took, cores):
@@ -41,8 +42,8 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
 
 
 def _cells(one: Departure, ensemble: bool, known: bool) -> list[str]:
-    if one.seconds is None or one.length is None:
-        return ["-"] * (4 + 2 * ensemble + known)
+    if one.seconds is None:
+        return ["-"] * (3 + 2 * ensemble + known)
     spread = []
     if ensemble:
         low, high = (one.spread.at(q) if one.spread is not None else one.seconds for q in (0.1, 0.9))
@@ -50,13 +51,16 @@ def _cells(one: Departure, ensemble: bool, known: bool) -> list[str]:
         spread = [f"{spread_clock(low)} - {spread_clock(high)}", able]
     gust = "-" if one.gust is None else f"{one.gust:.1f}"
     energy = [] if one.energy is None else [_energy_of(one)]
-    return [clock(one.seconds), *spread, *energy, f"{one.length / 1000:.2f}", f"{one.wind:.1f}", gust]
+    return [clock(one.seconds), *spread, *energy, f"{one.wind:.1f}", gust]
 
 
 def _energy_of(one: Departure) -> str:
     """The energy en route, and over an ensemble that of the member at 90 %."""
-    mean = watt_hours(one.energy or 0.0)
-    return mean if one.spread is None else f"{mean} ({watt_hours(one.spread.energy_at(0.9))})"
+    mean = f"{(one.energy or 0.0) / 3600:.0f}"
+    if one.spread is None:
+        return mean
+    high = one.spread.energy_at(0.9)
+    return f"{mean} ({high / 3600:.0f})" if high < float("inf") else f"{mean} (never)"
 
 
 def _last(one: Departure, longest: float) -> str:

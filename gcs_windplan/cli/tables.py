@@ -82,7 +82,8 @@ def _energy(plan: Plan) -> list[str]:
     total, usable = totals.energy + ends, airframe.battery.usable_energy
     line = (
         f"energy {watt_hours(totals.energy)} Wh en route, take-off{' and landing' * (plan.request.finish == 'land')}"
-        f" {watt_hours(ends)} Wh more: {100 * total / usable:.0f} % of the usable {watt_hours(usable)} Wh ({airframe.name})"
+        f" {watt_hours(ends)} Wh more: {100 * total / usable:.0f} % of the usable {watt_hours(usable)} Wh"
+        f" ({airframe.name})"
     )
     if plan.spread is not None:
         low, median, high = (watt_hours(plan.spread.energy_at(quantile)) for quantile in (0.1, 0.5, 0.9))

@@ -26,9 +26,7 @@ def format_departures(request: Request, found: Sequence[Departure]) -> str:
             "length": one.length,
             "energy": one.energy,
             "member_energies": _finite(one.spread.energies) if one.spread is not None else None,
-            "member_seconds": None
-            if one.spread is None
-            else [s if s < float("inf") else None for s in one.spread.seconds],
+            "member_seconds": _finite(one.spread.seconds) if one.spread is not None else None,
             "strongest_wind": one.wind,
             "strongest_gust": one.gust,
             "reason": one.reason,

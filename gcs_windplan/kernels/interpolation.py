@@ -26,6 +26,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 
 LOG, POWER = 0.0, 1.0
+_NOTHING = 1e-7  # a share so small is rounding: the column need not even be known
 _TOP = 0.01  # [m] a point may lie this far above the highest level and still be taken as on it
 
 # Every axis and column ascends strictly, so no divisor is 0. The model is that of `heightfield`: what Numba compiles
@@ -118,13 +119,14 @@ def interpolate_columns(
             for corner in range(8):
                 weight = (east if corner & 1 else 1.0 - east) * (north if corner & 2 else 1.0 - north)
                 weight *= late if corner & 4 else 1.0 - late
-                if weight == 0.0:
+                if weight < _NOTHING:
                     continue
                 k, j, i = t1 if corner & 4 else t, y1 if corner & 2 else y, x1 if corner & 1 else x
                 column = 0 if same else ((k * rows.size + j) * columns.size + i) * beyond
                 own, upper = terrain[j, i], guess + 1
                 below = tall[column + guess - na] if na <= guess < levels - 1 else math.inf
-                if below <= z[n] < tall[column + upper - na] and below > own + top and (na == 0 or below > ground[n] + top):
+                counts = below > own + top and (na == 0 or below > ground[n] + top)
+                if counts and below <= z[n] < tall[column + upper - na]:
                     lower = guess  # as in the column before: nearly always
                     share = (z[n] - below) / (tall[column + upper - na] - below)
                 else:

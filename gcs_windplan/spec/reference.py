@@ -1,30 +1,36 @@
-"""The reference of the mission file for people and for editors, made from the schema itself."""
+"""The reference of the mission and airframe files for people and for editors, made from the schemas themselves."""
 
 from __future__ import annotations
 
 import types
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
 import yaml
 from pydantic.fields import FieldInfo
 
+from gcs_windplan.spec.airframe import AirframeModel
 from gcs_windplan.spec.model import MissionModel
 from gcs_windplan.spec.section import Section
 from gcs_windplan.spec.units import QUANTITIES
 from gcs_windplan.spec.values import Checked, Measure
 
-_TITLE: Final = "# The mission file"
+_FILES: Final[Mapping[str, type[Section]]] = {
+    "# The mission file": MissionModel,
+    "# The airframe file": AirframeModel,
+}
 _COLUMNS: Final = ("field", "value", "default", "meaning")
 
 
 def schema_reference() -> str:
-    """Every field of the mission file as Markdown: values and units, default, meaning."""
-    parts = [_TITLE, _units_text()]
-    for section, places in _sections().items():
-        parts.append(f"## {', '.join(places) or 'top level'}")
-        parts.append(str(section.__doc__).partition("\n")[0])
-        parts.append(_table(_rows(section)))
+    """Every field of the mission and the airframe file as Markdown: values and units, default, meaning."""
+    parts: list[str] = []
+    for title, root in _FILES.items():
+        parts += [title, *([] if parts else [_units_text()])]
+        for section, places in _sections(root).items():
+            parts.append(f"## {', '.join(places) or 'top level'}")
+            parts.append(str(section.__doc__).partition("\n")[0])
+            parts.append(_table(_rows(section)))
     return "\n\n".join(parts) + "\n"
 
 
@@ -44,9 +50,9 @@ def _units_text() -> str:
     return "\n".join(lines)
 
 
-def _sections() -> dict[type[Section], list[str]]:
+def _sections(root: type[Section]) -> dict[type[Section], list[str]]:
     """Each kind of section in the order of the file, and the paths at which it stands."""
-    places: dict[type[Section], list[str]] = {MissionModel: []}
+    places: dict[type[Section], list[str]] = {root: []}
 
     def visit(section: type[Section], path: str) -> None:
         for name, info in section.model_fields.items():
@@ -55,7 +61,7 @@ def _sections() -> dict[type[Section], list[str]]:
                 places.setdefault(inner, []).append(place)
                 visit(inner, f"{place}.")
 
-    visit(MissionModel, "")
+    visit(root, "")
     return places
 
 
@@ -83,7 +89,7 @@ def _values(annotation: Any, metadata: Sequence[object] = ()) -> str:
         case kind if kind is Annotated:
             return _values(arguments[0], arguments[1:])
         case kind if kind in (Union, types.UnionType):
-            return " or ".join(_values(one) for one in arguments if one is not type(None))
+            return " or ".join(dict.fromkeys(_values(one) for one in arguments if one is not type(None)))
         case kind if kind is Literal:
             return ", ".join(f"`{_yaml(one)}`" for one in arguments)
         case kind if kind is tuple and arguments[-1] is ...:

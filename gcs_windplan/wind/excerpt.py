@@ -20,7 +20,7 @@ from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.wind.extent import ways_between
-from gcs_windplan.wind.forecast import Wanted, _Assembly
+from gcs_windplan.wind.forecast import Assembly, Wanted
 from gcs_windplan.wind.pairing import (
     STEADY_FOR,
     Members,
@@ -131,7 +131,7 @@ class Excerpt:
         """u and v (rows, columns, 2) towards true east and north [m/s], NaN where missing."""
         return self._at_moment(
             [
-                None if weight == 0 else self.assembly._wind(self.winds.pairs[time, member, level])
+                None if weight == 0 else self.assembly.wind(self.winds.pairs[time, member, level])
                 for time, weight in self._weighted_times
             ]
         )
@@ -139,7 +139,7 @@ class Excerpt:
     def heights(self, member: int | None) -> dict[Level, FloatArray]:
         """Heights of levels above mean sea level [m] (rows, columns), those that are known."""
         try:
-            told = self.assembly._heights(member, self.terrain)
+            told = self.assembly.heights(member, self.terrain)
         except WindError:
             return {}
         shape = self.terrain.shape
@@ -157,20 +157,20 @@ class Excerpt:
                 return None
             runs = {pair.first.run for (at, of, _), pair in self.winds.pairs.items() if (at, of) == (time, member)}
             newest = max(sheets, key=lambda sheet: (sheet.run in runs, sheet.run or 0.0)) if weight else None
-            read.append(None if newest is None else self.assembly._read(newest))
+            read.append(None if newest is None else self.assembly.read(newest))
         return self._at_moment(read)
 
     @cached_property
     def terrain(self) -> FloatArray:
         """The forecast's own ground above mean sea level [m] (rows, columns), NaN where unknown."""
-        return self.assembly._surface("terrain", np.nan)
+        return self.assembly.surface("terrain", np.nan)
 
     @cached_property
-    def assembly(self) -> _Assembly:
+    def assembly(self) -> Assembly:
         """The same winds on planning's way to a forecast."""
         departure = None if self.moment is None else datetime.fromtimestamp(self.moment, UTC)
         wanted = Wanted(self.part.placement.frame, departure=departure, lasting=0.0, area=POINT)
-        return _Assembly(self.winds, wanted, self.part)
+        return Assembly(self.winds, wanted, self.part)
 
     @cached_property
     def origin(self) -> FloatArray:

@@ -106,7 +106,7 @@ def read_forecast(paths: Sequence[Path | str], wanted: Wanted) -> Forecast:
             winds = pairing.choose(catalogues, wanted.members, span, wanted.known_height)
             titles = list(dict.fromkeys(c.title for c in catalogues if c.title))
             source = f"{title} ({titles[0][:80]})" if titles else title
-            return _Assembly(winds, wanted, part_of(winds.grid, wanted.frame, wanted.area, wanted.extend)).made(source)
+            return Assembly(winds, wanted, part_of(winds.grid, wanted.frame, wanted.area, wanted.extend)).made(source)
         except WindError as error:
             if str(error).startswith(tuple(map(str, files))):
                 raise
@@ -114,7 +114,7 @@ def read_forecast(paths: Sequence[Path | str], wanted: Wanted) -> Forecast:
 
 
 @dataclass(frozen=True, eq=False)
-class _Assembly:
+class Assembly:
     """Chosen winds, on their way to arrays."""
 
     winds: Winds
@@ -124,7 +124,7 @@ class _Assembly:
     def made(self, source: str) -> Forecast:
         """The forecast, named after its source."""
         winds, wanted = self.winds, self.wanted
-        law, said = self._law()
+        law, said = self.law()
         name = ", ".join([f"{source}: {self._levels()}", said, *winds.notes, *(["extended"] if wanted.extend else [])])
         zero, window = self._clock()
         fields = tuple(
@@ -152,13 +152,13 @@ class _Assembly:
     def _columns(self, member: int | None) -> Columns:
         """The arrays of one member."""
         winds, placement = self.winds, self.part.placement
-        terrain = self._surface("terrain", -math.inf)
-        heights = self._heights(member, terrain)
+        terrain = self.surface("terrain", -math.inf)
+        heights = self.heights(member, terrain)
         upwards = sorted(heights, key=lambda level: float(np.mean(heights[level])))
         levels = [*winds.above, *upwards]
         values = np.stack(
             [
-                np.stack([self._wind(winds.pairs[time, member, level]) for level in levels], axis=2)
+                np.stack([self.wind(winds.pairs[time, member, level]) for level in levels], axis=2)
                 for time in winds.times
             ]
         )
@@ -178,9 +178,9 @@ class _Assembly:
             columns=placement.columns,
         )
 
-    def _wind(self, pair: Pair) -> FloatArray:
+    def wind(self, pair: Pair) -> FloatArray:
         """u and v (rows, columns, 2) towards true east and north [m/s]."""
-        first, second = self._read(pair.first), self._read(pair.second)
+        first, second = self.read(pair.first), self.read(pair.second)
         if pair.polar:
             angle = np.radians(second)
             first, second = -first * np.sin(angle), -first * np.cos(angle)
@@ -195,10 +195,11 @@ class _Assembly:
         angle = axes_directions(self.winds.grid, self.part)
         return np.cos(angle), np.sin(angle)
 
-    def _read(self, sheet: Sheet) -> FloatArray:
+    def read(self, sheet: Sheet) -> FloatArray:
+        """The part of a sheet that is wanted (rows, columns)."""
         return sheet.read(self.part.rows, self.part.columns)
 
-    def _heights(self, member: int | None, terrain: FloatArray) -> dict[Level, FloatArray]:
+    def heights(self, member: int | None, terrain: FloatArray) -> dict[Level, FloatArray]:
         """Heights above sea level [m] of the levels beyond, where they are known at all times.
 
         (times, rows, columns), or (1, 1, 1) where they are the same everywhere. Raises `WindError` where the levels
@@ -224,7 +225,7 @@ class _Assembly:
     def _told(self, time: float | None, member: int | None) -> dict[Level, FloatArray]:
         """The heights that the files hold."""
         sheets = {level: self._other("height", time, member, level) for level in self.winds.beyond}
-        return {level: self._read(sheet) for level, sheet in sheets.items() if sheet is not None}
+        return {level: self.read(sheet) for level, sheet in sheets.items() if sheet is not None}
 
     def _worked_out(self, time: float | None, member: int | None, terrain: FloatArray) -> dict[Level, FloatArray]:
         """The heights of model levels from temperature and pressure; none where the files lack what that takes."""
@@ -234,7 +235,7 @@ class _Assembly:
         if pressure is None or half_levels is None or not warm or not np.isfinite(terrain).all():
             return {}
         found = heights_of_levels(
-            half_levels, self._read(pressure), terrain, warm, self._by_number("humidity", time, member)
+            half_levels, self.read(pressure), terrain, warm, self._by_number("humidity", time, member)
         )
         return {level: found[int(level.value)] for level in self.winds.beyond if int(level.value) in found}
 
@@ -242,7 +243,7 @@ class _Assembly:
         """A quantity on all model levels by their numbers."""
         levels = [level for name, level in self._index if name == quantity and level.kind == "model"]
         sheets = {int(level.value): self._other(quantity, time, member, level) for level in levels}
-        return {number: self._read(sheet) for number, sheet in sheets.items() if sheet is not None}
+        return {number: self.read(sheet) for number, sheet in sheets.items() if sheet is not None}
 
     def _other(self, quantity: Quantity, time: float | None, member: int | None, level: Level) -> Sheet | None:
         """A sheet beside the winds: of their time and, where there are any, their member and run."""
@@ -265,20 +266,20 @@ class _Assembly:
     def _runs(self) -> dict[tuple[float | None, int | None], float | None]:
         return {(time, member): pair.first.run for (time, member, _), pair in self.winds.pairs.items()}
 
-    def _surface(self, quantity: Quantity, otherwise: float) -> FloatArray:
+    def surface(self, quantity: Quantity, otherwise: float) -> FloatArray:
         """A field of the ground (rows, columns), or one number everywhere."""
         found = [sheet for sheet in self.winds.others if sheet.quantity == quantity]
         if not found:
             return np.full((len(self.part.rows), len(self.part.columns)), otherwise)
-        values = self._read(found[0])
+        values = self.read(found[0])
         return np.ascontiguousarray(np.where(np.isfinite(values), values, otherwise))
 
     def _roughness(self) -> FloatArray:
         wanted = self.wanted.roughness
-        field = self._surface("roughness", ROUGHNESS if wanted is None else wanted)
+        field = self.surface("roughness", ROUGHNESS if wanted is None else wanted)
         return np.full_like(field, wanted) if wanted is not None else np.maximum(field, 1e-5)
 
-    def _law(self) -> tuple[Law, str]:
+    def law(self) -> tuple[Law, str]:
         """The law below the lowest level, and what is said of it."""
         wanted = self.wanted
         carry = _HIGHEST_CARRIED if wanted.carried and not self.winds.beyond else 0.0
@@ -301,11 +302,10 @@ class _Assembly:
 
     def _gusts(self, member: int | None, like: GriddedWind) -> GriddedWind | None:
         """The gusts of a member as a field whose first part is the gust, None where not every time has one."""
-        sheets = [
-            next((s for s in self.winds.others if s.quantity == "gust" and s.time == time and s.member == member), None)
-            for time in self.winds.times
-        ]
-        read = [self._read(sheet) for sheet in sheets if sheet is not None]
+        levels = [level for quantity, level in self._index if quantity == "gust"]
+        level = min(levels, key=lambda one: one.kind != "height", default=SURFACE)
+        sheets = [self._other("gust", time, member, level) for time in self.winds.times]
+        read = [self.read(sheet) for sheet in sheets if sheet is not None]
         if len(read) < len(sheets) or not np.isfinite(read).all():
             return None
         values = np.stack([np.stack([gust, np.zeros_like(gust)], axis=-1) for gust in read])[:, :, :, None, :]

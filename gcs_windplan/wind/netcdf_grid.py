@@ -115,9 +115,19 @@ class Layouts:
             rows, columns, latitudes, longitudes = columns, rows, latitudes.T, longitudes.T
         if (latitudes == latitudes[:, :1]).all() and (longitudes == longitudes[:1]).all():
             latitudes, longitudes = latitudes[:, 0], longitudes[0]
-        return Layout(
-            Grid(latitudes, longitudes, f"{latitude.name}, {longitude.name} on {rows}, {columns}"), rows, columns
-        )
+        name = f"{latitude.name}, {longitude.name} on {rows}, {columns}"
+        return Layout(Grid(latitudes, longitudes, name, self._runs_back(columns)), rows, columns)
+
+    def _runs_back(self, dimension: str) -> bool:
+        """Whether the numbers along a dimension descend."""
+        axis = self._file.variables.get(dimension)
+        if axis is None or axis.dimensions != (dimension,):
+            return False
+        try:
+            numbers = np.asarray(self._file.values(axis), dtype=np.float64).ravel()
+        except (TypeError, ValueError):
+            return False
+        return bool(len(numbers) > 1 and numbers[-1] < numbers[0])
 
     def _is_x(self, dimension: str) -> bool:
         axis = self._file.variables.get(dimension)
@@ -143,7 +153,7 @@ class Layouts:
         if key not in self._known:
             x, y = (self._file.values(axis).ravel() for axis in (xs[0], ys[0]))
             nodes = unprojected(x, y, mapping, (xs[0].told("units"), ys[0].told("units")))
-            grid = Grid(*nodes, mapping.text("grid_mapping_name"))
+            grid = Grid(*nodes, mapping.text("grid_mapping_name"), backwards=bool(x[-1] < x[0]))
             self._known[key] = Layout(grid, ys[0].dimensions[0], xs[0].dimensions[0])
         return self._known[key]
 

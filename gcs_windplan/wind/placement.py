@@ -243,7 +243,7 @@ def _behind(grid: Grid, frame: LocalFrame) -> BoolArray:
 def axes_directions(grid: Grid, part: Part) -> FloatArray:
     """The angle from true east to the grid's x axis, anticlockwise [rad], at a part's nodes (rows, columns).
 
-    The x axis runs along the columns, to the side on which east lies in the middle of the part.
+    The x axis runs along the columns, against their order where the grid says so.
     """
     latitudes = np.radians(grid.latitudes[np.ix_(part.rows, part.columns)])
     longitudes = np.unwrap(np.radians(grid.longitudes[np.ix_(part.rows, part.columns)]), axis=1)
@@ -251,10 +251,8 @@ def axes_directions(grid: Grid, part: Part) -> FloatArray:
         raise WindError(f"its grid ({grid.name}) has too few nodes to tell where its axes point")
     east = np.cos(latitudes) * _slope(longitudes)
     north = _slope(latitudes)
-    middle = east.shape[0] // 2, east.shape[1] // 2
-    if east[middle] < 0:
-        east, north = -east, -north
-    angle: FloatArray = np.arctan2(north, east)
+    turn = -1.0 if grid.backwards else 1.0
+    angle: FloatArray = np.arctan2(turn * north, turn * east)
     return angle
 
 

@@ -68,11 +68,15 @@ class Grid:
 
     Either one a row (ny,) and one a column (nx,), in any order, longitudes in any turn; or both (ny, nx) where rows and
     columns are no parallels and meridians (projected and rotated grids). `name` says what it is, for people.
+
+    Winds along the grid: u goes along the columns, from the first to the last unless `backwards`, and v a right angle
+    to the left of u, seen from above.
     """
 
     latitudes: FloatArray
     longitudes: FloatArray
     name: str
+    backwards: bool = False
 
     def __post_init__(self) -> None:
         for axis in (self.latitudes, self.longitudes):
@@ -101,6 +105,7 @@ class Grid:
         return (
             self.shape,
             self.regular,
+            self.backwards,
             np.round(self.latitudes, 5).tobytes(),
             np.round(self.longitudes % 360.0, 5).tobytes(),
         )

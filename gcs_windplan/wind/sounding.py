@@ -205,7 +205,7 @@ def _unblown(excerpt: Excerpt, here: Here, altitude: Altitude) -> Spot:
         above_ground=altitude.metres if altitude.above_ground else height - here.ground,
         lower=lower,
         upper=upper,
-        law=excerpt.assembly._law()[1],
+        law=excerpt.assembly.law()[1],
     )
 
 

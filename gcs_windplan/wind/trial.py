@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.wind.excerpt import POINT, members_for, pairs_of
-from gcs_windplan.wind.forecast import Wanted, _Assembly
+from gcs_windplan.wind.forecast import Assembly, Wanted
 from gcs_windplan.wind.pairing import Span, Winds, choose
 from gcs_windplan.wind.placement import part_of
 from gcs_windplan.wind.sheets import Catalogue, Grid
@@ -56,7 +56,7 @@ def _made(winds: Winds, first: float | None, lasting: float) -> str:
     frame = LocalFrame(_middle(winds.grid))
     moment = None if first is None else datetime.fromtimestamp(first, UTC)
     wanted = Wanted(frame, departure=moment, lasting=lasting, area=POINT)
-    made = _Assembly(winds, wanted, part_of(winds.grid, frame, POINT, extend=True)).made("")
+    made = Assembly(winds, wanted, part_of(winds.grid, frame, POINT, extend=True)).made("")
     return made.name.removeprefix(": ")
 
 

@@ -136,7 +136,16 @@ def _agree(ours: list[tuple[float, ...]], theirs: list[tuple[float, ...]]) -> bo
 
 def test_the_gallery_is_whole():
     names = {path.stem for path in MISSIONS}
-    assert names >= {"paper_case1", "paper_case2", "paper_case3", "jacksboro", "village", "keep_out", "inspection", "front"}
+    assert names >= {
+        "paper_case1",
+        "paper_case2",
+        "paper_case3",
+        "jacksboro",
+        "village",
+        "keep_out",
+        "inspection",
+        "front",
+    }
     assert isinstance(gw.mission_of(planned(MISSIONS[0])), Mission)
 
 
