@@ -103,7 +103,7 @@ class _Job:
         energy = self._energy(found.points, begin)
         reason = None
         if spread is not None and not np.isfinite(spread.at(self.request.robust)):
-            reason = f"only {len(spread.seconds) - spread.unflyable} of {len(spread.seconds)} members"
+            reason = f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members"
         reason = reason or self._too_much(energy)
         worked = time.process_time() - since
         return Departure(moment, found.arrival - begin, length, energy, spread, wind, gust, reason, worked)
@@ -121,7 +121,7 @@ class _Job:
         airframe = self.request.airframe
         if airframe is None or energy is None or energy <= airframe.battery.usable_energy:
             return None
-        return f"takes {energy / 3600:.0f} of {airframe.battery.usable_energy / 3600:.0f} Wh"
+        return f"{energy / 3600:.0f} of {airframe.battery.usable_energy / 3600:.0f} Wh"
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

@@ -29,7 +29,7 @@ def test_interpolation(table, kind):
 
 def test_a_plan_in_a_three_hourly_forecast(table):
     for cores in (1, 2):
-        one = measure("changing_plan", 80.0, cores=cores)
+        one = measure("changing_plan", 100.0, cores=cores)
         table("Plan in a 3-hourly forecast, whole: Jacksboro fault, 16 neighbours, 3 layers").row(
             nodes=f"{one.answer['nodes']:,.0f}", cores=cores, seconds=f"{one.seconds:.2f}",
             veil_s=f"{one.answer['veil']:.2f}", search_s=f"{one.answer['search']:.2f}",

@@ -31,7 +31,7 @@ def test_it_tells_when_to_fly():
     morning, noon, evening = found
     assert morning["seconds"] < noon["seconds"] < evening["seconds"]
     assert [row["feasible"] for row in found] == [True, True, False]
-    assert evening["reason"] == f"only {10 - evening['member_seconds'].count(None)} of 10 members"
+    assert evening["reason"] == f"{10 - evening['member_seconds'].count(None)}/10 members"
     assert all(len(row["member_seconds"]) == 10 for row in found)
     assert None not in morning["member_seconds"]
     assert None in evening["member_seconds"]  # too strong in some members
