@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ def test_a_cross_wind_is_countered_at_the_same_airspeed():
 
 
 def test_where_the_climb_rate_holds_it_back_it_flies_slower_through_the_air():
-    """100 m up on 200 m of way take 33.3 s at 3 m/s: 6 m/s over ground, in a head wind of 1 m/s 7 m/s through the air."""
+    """100 m up on 200 m of way take 33.3 s at 3 m/s: 6 m/s over ground, 7 m/s through the air ahead."""
     (joules,) = energy([[0, 0, 0], [200, 0, 100]], Everywhere(-1.0))
     heights = (np.arange(16) + 0.5) / 16 * 100.0
     assert joules == pytest.approx(100 / 3 * float(np.mean(LIU.watts(7.0, 3.0, air_density(heights)))), rel=1e-9)
@@ -63,7 +64,7 @@ def test_in_changing_wind_it_equals_a_flight_in_small_steps(seed):
     random = np.random.default_rng(seed)
     points = np.cumsum(np.vstack([[0, 0, 300], random.uniform(-500, 500, (3, 3)) * (1, 1, 0.05)]), axis=0)
     clock, total = 0.0, 0.0
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         vector, gone = end - start, 0.0
         level = math.hypot(vector[0], vector[1])
         while gone < 1.0:

@@ -12,9 +12,9 @@ import typer
 if TYPE_CHECKING:
     from gcs_windplan.cli.wind_options import Asked, View
     from gcs_windplan.geodesy import GeoPoint
-    from gcs_windplan.wind.inventory import OpenFile
+    from gcs_windplan.wind.report.inventory import OpenFile
+    from gcs_windplan.wind.report.sounding import Altitude
     from gcs_windplan.wind.sheets import Catalogue
-    from gcs_windplan.wind.sounding import Altitude
 
 HELP = (
     "What is in forecast files that belong together (GRIB, NetCDF, answers of Open-Meteo): times, levels, members,"
@@ -49,7 +49,7 @@ def wind(
 ) -> None:
     """Look into the files and print."""
     from gcs_windplan.cli.wind_options import Asked, read_member, read_place, read_time, read_view
-    from gcs_windplan.wind.inventory import open_files
+    from gcs_windplan.wind.report.inventory import open_files
 
     place = None if at is None else read_place(at)
     asked = Asked(read_time(time), read_member(member))
@@ -66,7 +66,7 @@ def _inventory(opened: Sequence[OpenFile], asked: Asked, view: View, as_json: bo
     from gcs_windplan.cli import wind_json, wind_picture, wind_tables
     from gcs_windplan.cli.wind_options import Asked, View
     from gcs_windplan.errors import WindError
-    from gcs_windplan.wind.inventory import take_inventory
+    from gcs_windplan.wind.report.inventory import take_inventory
 
     if as_json:
         typer.echo(wind_json.format_inventory(take_inventory(opened)))
@@ -86,7 +86,7 @@ def _wind_at(
 ) -> None:
     """The wind at a place, and a picture of its surroundings where that is wanted."""
     from gcs_windplan.cli import wind_json, wind_picture, wind_tables
-    from gcs_windplan.wind.sounding import sounding_at, spot_at
+    from gcs_windplan.wind.report.sounding import sounding_at, spot_at
 
     found = sounding_at(catalogues, place, *asked) if altitude is None else spot_at(catalogues, place, altitude, *asked)
     if as_json:

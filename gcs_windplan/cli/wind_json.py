@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.wind.inventory import Count, FileFacts, GridFacts, Holding, Inventory
-from gcs_windplan.wind.series import Series
+from gcs_windplan.wind.report.inventory import Count, FileFacts, GridFacts, Holding, Inventory
+from gcs_windplan.wind.report.series import Series
+from gcs_windplan.wind.report.sounding import Here, Sounding, Spot
+from gcs_windplan.wind.report.spread import direction_from
+from gcs_windplan.wind.report.trial import Trial
 from gcs_windplan.wind.sheets import Level
-from gcs_windplan.wind.sounding import Here, Sounding, Spot
-from gcs_windplan.wind.spread import direction_from
-from gcs_windplan.wind.trial import Trial
 
 
 def format_inventory(inventory: Inventory) -> str:

@@ -11,9 +11,9 @@ from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.spec.units import LENGTH
 from gcs_windplan.spec.values import CLEARANCE, LATITUDE, LONGITUDE, SIGNED_LENGTH, Measure, Moment
-from gcs_windplan.wind.excerpt import Choice
+from gcs_windplan.wind.report.excerpt import Choice
+from gcs_windplan.wind.report.sounding import Altitude
 from gcs_windplan.wind.sheets import Level
-from gcs_windplan.wind.sounding import Altitude
 
 T = TypeVar("T")
 

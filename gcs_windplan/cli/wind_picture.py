@@ -10,8 +10,8 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.cli.wind_options import Asked, View
 from gcs_windplan.cli.wind_words import say_span, short
-from gcs_windplan.wind.level_map import LevelMap, TimeMap, map_around, map_of, single_place, times_of
 from gcs_windplan.wind.pairing import say_time
+from gcs_windplan.wind.report.level_map import LevelMap, TimeMap, map_around, map_of, single_place, times_of
 from gcs_windplan.wind.sheets import Catalogue
 
 _ARROWS = "↑↗→↘↓↙←↖"  # clockwise from north

@@ -15,11 +15,11 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cli import wind_words as words
 from gcs_windplan.cli.tables import make_console
 from gcs_windplan.cli.wind_picture import Picture
-from gcs_windplan.wind.inventory import Inventory
 from gcs_windplan.wind.pairing import say_time
+from gcs_windplan.wind.report.inventory import Inventory
+from gcs_windplan.wind.report.sounding import Here, Row, Sounding, Spot
+from gcs_windplan.wind.report.spread import direction_from, spread_of, spread_of_directions
 from gcs_windplan.wind.sheets import Level
-from gcs_windplan.wind.sounding import Here, Row, Sounding, Spot
-from gcs_windplan.wind.spread import direction_from, spread_of, spread_of_directions
 
 _INDENT = 10  # characters
 _FILES = 10  # that are named one by one

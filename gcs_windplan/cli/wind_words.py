@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby, pairwise
 
-from gcs_windplan.wind.extent import Extent, Spacing
-from gcs_windplan.wind.inventory import Count, FileFacts, GridFacts, Holding, Inventory, Missing
 from gcs_windplan.wind.pairing import say_time
-from gcs_windplan.wind.series import Gap, Series
+from gcs_windplan.wind.report.extent import Extent, Spacing
+from gcs_windplan.wind.report.inventory import Count, FileFacts, GridFacts, Holding, Inventory, Missing
+from gcs_windplan.wind.report.series import Gap, Series
+from gcs_windplan.wind.report.trial import Trial
 from gcs_windplan.wind.sheets import Level
-from gcs_windplan.wind.trial import Trial
 
 _LISTED = 8  # levels, times
 _SHORT = 16  # characters of names

@@ -20,8 +20,8 @@ from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import pairing
-from gcs_windplan.wind.anyfile import open_catalogue
 from gcs_windplan.wind.field import Ground
+from gcs_windplan.wind.files.anyfile import open_catalogue
 from gcs_windplan.wind.gridded import GriddedWind
 from gcs_windplan.wind.model_levels import heights_of_levels
 from gcs_windplan.wind.pairing import Members, Pair, Span, Winds, say_time

@@ -10,7 +10,7 @@ import netCDF4
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.wind.netcdf import open_netcdf
+from gcs_windplan.wind.files.netcdf import open_netcdf
 from gcs_windplan.wind.sheets import Catalogue, Sheet
 
 #: Dimensions separated by blanks, values, attributes.

@@ -111,7 +111,7 @@ def _of_netcdf(path: Path) -> Iterator[Value]:
 
 def _of_ndfd(path: Path, file: Any) -> Iterator[Value]:
     """Its places by the reader's grid, which has tests of its own."""
-    from gcs_windplan.wind.anyfile import open_catalogue
+    from gcs_windplan.wind.files.anyfile import open_catalogue
 
     with open_catalogue(path) as catalogue:
         grid = catalogue.sheets[0].grid

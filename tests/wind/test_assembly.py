@@ -21,7 +21,7 @@ ONE_CM_PER_SECOND = 0.01
 FRAME = LocalFrame(GeoPoint(51.0, 9.5))
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
 DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "wind"
-HERE = np.array([[0.0, 0.0, 0.0]])
+HERE = np.array([[0.0, 0.0, 50.0]])
 
 
 def _flat(points):
@@ -309,3 +309,17 @@ def test_an_ensemble_without_v_is_refused(shared_data: Path) -> None:
         read_forecast(
             [shared_data / "wind" / "ecmwf_ens_ztu_multi_dim.grib"], Wanted(FRAME, _flat, NOON, members="all")
         )
+
+
+def test_a_gust_is_of_the_same_run_as_the_wind(tmp_path: Path) -> None:
+    gust = {"typeOfLevel": "heightAboveGround", "level": 10}
+    path = _file(
+        tmp_path / "a.grib",
+        *_level(5, height=1500, dataTime=0, endStep=12),
+        message("gust", 99.0, dataTime=0, endStep=12, **gust),
+        *_level(7, height=1500, dataTime=1200),
+        message("gust", 12.0, dataTime=1200, **gust),
+    )
+    forecast = _read(path)
+    np.testing.assert_allclose(_east(forecast, 1500.0), [7], atol=ONE_CM_PER_SECOND)
+    assert np.hypot(*forecast.gusts[0].at(HERE)[0, :2]) == pytest.approx(12.0, abs=ONE_CM_PER_SECOND)

@@ -117,3 +117,23 @@ def test_an_uneven_grid_is_refused():
     latitudes[20, 20] += 0.02
     with pytest.raises(WindError, match="too uneven"):
         part_of(Grid(latitudes, lattice.longitudes, "bent"), frame, AREA)
+
+
+@pytest.mark.parametrize("longitude", [0.0, 45.0, 89.0, 135.0, 180.0, -100.0])
+def test_on_a_polar_grid_the_axes_turn_with_the_meridian_all_around(longitude):
+    """Polar stereographic about the pole, y axis along 180 degrees: at a longitude the x axis lies so far clockwise."""
+    radius = 6371229.0
+    x, y = np.meshgrid(np.arange(-2000e3, 2001e3, 50e3), np.arange(-2000e3, 2001e3, 50e3))
+    latitudes = 90 - 2 * np.degrees(np.arctan(np.hypot(x, y) / (2 * radius)))
+    longitudes = np.degrees(np.arctan2(x, -y))
+    polar, frame = Grid(latitudes, longitudes, "polar stereographic"), LocalFrame(GeoPoint(76.0, longitude))
+    part = part_of(polar, frame, AREA)
+    middle = len(part.rows) // 2, len(part.columns) // 2
+    here = longitudes[part.rows[middle[0]], part.columns[middle[1]]]
+    found = np.degrees(axes_directions(polar, part)[middle])
+    assert (found + here + 180) % 360 - 180 == pytest.approx(0.0, abs=0.1)
+    back = Grid(latitudes[:, ::-1], longitudes[:, ::-1], "polar stereographic", backwards=True)
+    part = part_of(back, frame, AREA)
+    here = back.longitudes[part.rows[middle[0]], part.columns[middle[1]]]
+    found = np.degrees(axes_directions(back, part)[middle])
+    assert (found + here + 180) % 360 - 180 == pytest.approx(0.0, abs=0.1)

@@ -1,0 +1,76 @@
+"""A wind file of whatever format: which one, its first bytes tell. Each reader is imported when it is needed."""
+
+from __future__ import annotations
+
+import codecs
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+from gcs_windplan.errors import WindError
+from gcs_windplan.wind.sheets import Catalogue
+
+_HEAD = 1000  # [bytes] that are looked at; in front of GRIB there may be a header of the message switch
+_READ = "NetCDF, GRIB and answers of Open-Meteo (JSON) are read"
+_PACKED = {
+    b"\x1f\x8b": ("gzip", "gunzip"),
+    b"BZh": ("bzip2", "bunzip2"),
+    b"PK\x03\x04": ("zip", "unzip"),
+    b"\xfd7zXZ": ("xz", "unxz"),
+    b"\x28\xb5\x2f\xfd": ("zstd", "unzstd"),
+}
+
+
+def open_catalogue(path: Path) -> AbstractContextManager[Catalogue]:
+    """The sheets of a NetCDF or GRIB file or an answer of Open-Meteo, which can be read as long as it is open.
+
+    Raises `WindError` that begins with the path: for a file that is missing, empty or of another format, and whatever
+    its reader raises.
+    """
+    head = _head(path)
+    text = _text(head)
+    if head.startswith((b"CDF", b"\x89HDF")):
+        from gcs_windplan.wind.files.netcdf import open_netcdf
+
+        return open_netcdf(path)
+    if text.startswith(("{", "[")):
+        from gcs_windplan.wind.files.openmeteo import open_openmeteo
+
+        return open_openmeteo(path)
+    _refuse_others(path, head, text)
+    if b"GRIB" in head:
+        from gcs_windplan.wind.files.grib import open_grib
+
+        return open_grib(path)
+    raise WindError(f"{path}: is of no format that is known here; {_READ}")
+
+
+def _head(path: Path) -> bytes:
+    if path.is_dir():
+        raise WindError(f"{path}: is a folder; name one file: {_READ}")
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD + 4)
+    except FileNotFoundError as error:
+        raise WindError(f"{path}: no such file; {_READ}") from error
+    except OSError as error:
+        raise WindError(f"{path}: cannot be read ({error.strerror}); {_READ}") from error
+    if not head.strip(b"\0 \r\n\t"):
+        raise WindError(f"{path}: is empty: download it again; {_READ}")
+    return head
+
+
+def _text(head: bytes) -> str:
+    """The head as text without a byte order mark and white space, empty if it is none."""
+    encoding = "utf-16" if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig"
+    return head.decode(encoding, errors="replace").lstrip().lower()
+
+
+def _refuse_others(path: Path, head: bytes, text: str) -> None:
+    """Raise `WindError` for files that are not what was meant, and say what they are."""
+    for magic, (name, command) in _PACKED.items():
+        if head.startswith(magic):
+            raise WindError(f"{path}: is packed with {name}: unpack it first (`{command}`); {_READ}")
+    if text.startswith("<?xml") and "<html" not in text:
+        raise WindError(f"{path}: is XML, often a server's error: open it to see what went wrong; {_READ}")
+    if text.startswith("<"):
+        raise WindError(f"{path}: is a web page: the download went wrong, open it in a browser to see why; {_READ}")
