@@ -13,9 +13,10 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cores import available_cores
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.energy import leg_energies
+from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, WindError
 from gcs_windplan.flight import fly_legs
-from gcs_windplan.planner import Ready, Spread, find_route, prepare, spread_of
+from gcs_windplan.planner import Ready, find_route, prepare
 from gcs_windplan.request import Request
 from gcs_windplan.shaping import shape_quickly
 from gcs_windplan.wind.field import WindField

@@ -8,16 +8,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import NoReturn
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost import CostChoice, LegCost, rank_of
-from gcs_windplan.energy import leg_energies
+from gcs_windplan.cost import CostChoice, LegCost
+from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, RequestError, WindError
-from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly, fly_legs
+from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.search import WindyVeil, blow, find_path
 from gcs_windplan.shaping import shape
@@ -32,11 +33,7 @@ from gcs_windplan.siting import (
 )
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
-
-_WAITS = tuple(k / 8 for k in range(1, 9))  # of the flight's duration: who waits longer cannot arrive earlier
-_WORTH_WAITING = 0.01  # of the flight's duration
-_TRIED_EVERY = 600.0  # [s] later departures that are tried where no route exists
-_MOST_TRIED = 24
+from gcs_windplan.waiting import until_it_opens, where_it_pays
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,28 +46,6 @@ class Effort:
     veil_seconds: float
     search_seconds: float
     shaping_seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Spread:
-    """What the route takes in each member of an ensemble: seconds, infinite where one cannot fly it, and energy [J],
-    where the vehicle's power is known."""
-
-    seconds: tuple[float, ...]
-    energies: tuple[float, ...] = ()
-
-    def at(self, quantile: float) -> float:
-        """The time of the member at a quantile, from the fastest up [s]."""
-        return sorted(self.seconds)[rank_of(quantile, len(self.seconds))]
-
-    def energy_at(self, quantile: float) -> float:
-        """The energy of the member at a quantile, from the thriftiest up [J]."""
-        return sorted(self.energies)[rank_of(quantile, len(self.energies))]
-
-    @property
-    def unflyable(self) -> int:
-        """How many members cannot fly it."""
-        return sum(not np.isfinite(one) for one in self.seconds)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -179,13 +154,17 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     try:
         found, spread = _best_route(ready, choice, begin)
     except NoRouteError as error:
-        raise NoRouteError(f"{error}{_opens(ready, begin)}", error.cuts) from error
+        raise NoRouteError(
+            f"{error}{until_it_opens(begin, ready.windy.ends, partial(_lasting, ready))}", error.cuts
+        ) from error
     flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power)
     effort = Effort(
         ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
         found.shaping_seconds,
     )  # fmt: skip
-    notes = (*_notes(request, ready.windy), *_waiting(ready, found, begin))
+    notes = _notes(request, ready.windy)
+    if found.deferred:
+        notes += where_it_pays(found.arrival - begin, begin, partial(_lasting, ready))
     return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, notes)
 
 
@@ -288,19 +267,6 @@ def _cost_between(ready: Ready, choice: CostChoice, start: FloatArray, goal: Flo
     return LegCost(choice, request.wind, request.vehicle, edge, straight, begin, request.members, request.robust)
 
 
-def spread_of(request: Request, points: FloatArray, begin: float = 0.0) -> Spread | None:
-    """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble."""
-    if not request.members:
-        return None
-    times = [fly_legs(points, member, request.vehicle, begin)[1] for member in request.members]
-    energies = []
-    if request.power is not None:
-        for member, passed in zip(request.members, times, strict=True):
-            joules = leg_energies(points, passed, member, request.vehicle, request.power).sum()
-            energies.append(float(joules) if np.isfinite(joules) else float("inf"))
-    return Spread(tuple(float(passed[-1] - begin) for passed in times), tuple(energies))
-
-
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     """What a pilot must know: models that flatter, tests that miss, what the vehicle does not hold."""
     notes = []
@@ -319,36 +285,6 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     if request.rally and request.finish == "return":
         notes.append("at the end the vehicle returns to the rally point nearest to it, or home if that is nearer.")
     return tuple(notes)
-
-
-def _waiting(ready: Ready, found: FoundRoute, begin: float) -> tuple[str, ...]:
-    """A note where leaving later would arrive earlier: some way was closed by the wind and opens later.
-
-    Where every way stays open nobody who leaves later arrives earlier, and nothing is tried.
-    """
-    lasting = found.arrival - begin
-    if not found.deferred:
-        return ()
-    waits = [share * lasting for share in _WAITS]
-    arrivals = [wait + _lasting(ready, begin + wait) for wait in waits]
-    least = int(np.argmin(arrivals))
-    if lasting - arrivals[least] < _WORTH_WAITING * lasting:
-        return ()
-    return (
-        f"waiting pays: leaving {waits[least] / 60:.0f} min later arrives {(lasting - arrivals[least]) / 60:.0f} min"
-        " earlier, since the wind closes the best way until then.",
-    )
-
-
-def _opens(ready: Ready, begin: float) -> str:
-    """When a route exists if none does now, as far as the forecast reaches, in words; nothing if that is never."""
-    ends = ready.windy.ends
-    if not np.isfinite(ends):
-        return ""
-    step = max(_TRIED_EVERY, (ends - begin) / _MOST_TRIED)
-    waits = np.arange(step, ends - begin, step)
-    wait = next((float(wait) for wait in waits if np.isfinite(_lasting(ready, begin + float(wait)))), None)
-    return "" if wait is None else f" It can be flown when leaving {wait / 60:.0f} min later."
 
 
 def _lasting(ready: Ready, begin: float) -> float:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import gcs_windplan as gw
+from gcs_windplan.ensemble import Spread
 from gcs_windplan.flight import fly_legs
-from gcs_windplan.planner import Spread
 from tests.ensembles import Corridor, Everywhere, Gate, divided, request
 
 
