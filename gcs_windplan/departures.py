@@ -10,12 +10,12 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.battery import battery_use
 from gcs_windplan.cores import available_cores
 from gcs_windplan.cost import CostChoice
-from gcs_windplan.energy import leg_energies
 from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, WindError
-from gcs_windplan.flight import fly_legs
+from gcs_windplan.flight import Flight, fly, fly_legs
 from gcs_windplan.planner import Ready, find_route, prepare
 from gcs_windplan.request import Request
 from gcs_windplan.shaping import shape_quickly
@@ -93,36 +93,31 @@ class _Job:
 
     def depart(self, moment: datetime, begin: float) -> Departure:
         """The best route that begins at `begin` [s after the request's departure]."""
-        since = time.process_time()
+        since, request = time.process_time(), self.request
         try:
             found = find_route(self.ready, self.choice, begin, shape_quickly)
+            flight = fly(
+                found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power
+            )
         except (NoRouteError, WindError) as error:
             return Departure(moment, reason=str(error), worked=time.process_time() - since)
-        length = float(np.sum(np.linalg.norm(np.diff(found.points, axis=0), axis=1)))
-        spread = spread_of(self.request, found.points, begin)
+        spread = spread_of(request, found.points, begin)
         wind, gust = self._strongest(found.points, begin)
-        energy = self._energy(found.points, begin)
-        reason = None
-        if spread is not None and not np.isfinite(spread.at(self.request.robust)):
-            reason = f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members"
-        reason = reason or self._too_much(energy)
-        worked = time.process_time() - since
-        return Departure(moment, found.arrival - begin, length, energy, spread, wind, gust, reason, worked)
+        return Departure(
+            moment, flight.totals.seconds, flight.totals.length, flight.totals.energy, spread, wind, gust,
+            self._reason(flight, spread), time.process_time() - since,
+        )  # fmt: skip
 
-    def _energy(self, points: FloatArray, begin: float) -> float | None:
-        """The energy en route in the mean wind [J]."""
+    def _reason(self, flight: Flight, spread: Spread | None) -> str | None:
+        """Why it is not to be flown: too few members can, or the battery's reserve is broken."""
         request = self.request
-        if request.power is None:
+        if spread is not None and not np.isfinite(spread.at(request.robust)):
+            return f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members"
+        en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
+        use = battery_use(request, flight, en_route)
+        if use is None or use.missing == 0:
             return None
-        _, times = fly_legs(points, request.wind, request.vehicle, begin)
-        return float(leg_energies(points, times, request.wind, request.vehicle, request.power).sum())
-
-    def _too_much(self, energy: float | None) -> str | None:
-        """What to say of an energy en route that the battery does not hold."""
-        airframe = self.request.airframe
-        if airframe is None or energy is None or energy <= airframe.battery.usable_energy:
-            return None
-        return f"{energy / 3600:.0f} of {airframe.battery.usable_energy / 3600:.0f} Wh"
+        return f"{use.total / 3600:.0f} of {use.allowed / 3600:.0f} Wh"
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

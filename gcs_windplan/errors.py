@@ -9,6 +9,7 @@ WindplanError
 │   ├── AddressError      a link's address that is wrong or in use
 │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
 ├── NoRouteError          all input is fine and yet no route exists: exit code 1
+│   └── BatteryError      the best route takes more than the battery may give
 └── LinkError             the link is dead or nobody answers, so that what the vehicle holds is unknown: exit code 4
     └── RefusedError      the vehicle said no: exit code 3
 """
@@ -90,6 +91,13 @@ class NoRouteError(WindplanError):
     def __init__(self, message: str, cuts: dict[str, int]) -> None:
         self.cuts = cuts
         super().__init__(message)
+
+
+class BatteryError(NoRouteError):
+    """The best route breaks the battery's reserve."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message, {"battery": 1})
 
 
 class LinkError(WindplanError):

@@ -15,6 +15,7 @@ from typing import NoReturn
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.battery import BatteryUse, battery_use, refuse_overdrawn
 from gcs_windplan.cost import CostChoice, LegCost
 from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, RequestError, WindError
@@ -53,8 +54,8 @@ class Plan:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
     `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
-    the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `notes` say
-    what a pilot must know before flying it.
+    the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `battery` is
+    known where the airframe is; `notes` say what a pilot must know before flying it.
     """
 
     request: Request
@@ -64,6 +65,7 @@ class Plan:
     graph_cost: float
     effort: Effort
     spread: Spread | None = None
+    battery: BatteryUse | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -111,13 +113,16 @@ def plan_route(request: Request) -> Plan:
     """Plan the request's route by its own cost.
 
     Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
-    `TerrainError` where the data do not cover the place, and `NoRouteError` where no route exists.
+    `TerrainError` where the data do not cover the place, `NoRouteError` where no route exists, and `BatteryError` where
+    the best one breaks the battery's reserve.
     """
-    return plan_routes(request, [request.cost])[0]
+    plan = plan_routes(request, [request.cost])[0]
+    refuse_overdrawn(plan.battery)
+    return plan
 
 
 def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
-    """Plan the request's route once for each cost, on one and the same veil."""
+    """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
     ready = prepare(request)
     return [plan_ready(ready, choice) for choice in choices]
 
@@ -165,7 +170,9 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     notes = _notes(request, ready.windy)
     if found.deferred:
         notes += where_it_pays(found.arrival - begin, begin, partial(_lasting, ready))
-    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, notes)
+    en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
+    battery = battery_use(request, flight, en_route)
+    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, notes)
 
 
 def _best_route(ready: Ready, choice: CostChoice, begin: float) -> tuple[FoundRoute, Spread | None]:

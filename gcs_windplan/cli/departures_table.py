@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gcs_windplan.departures import Departure
     from gcs_windplan.request import Request
 
-_BAR = 14  # characters of the longest time
+_BAR = 10  # characters of the longest time
 
 
 def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:

@@ -29,19 +29,20 @@ def plan(
         bool | None,
         typer.Option("--speed-changes/--no-speed-changes", help="Command each leg's ground speed, or none."),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write it even if it breaks the battery's reserve.")] = False,
 ) -> None:
     """Plan and write."""
     request = read_request(mission, airspeed)
 
     from gcs_windplan.cli.tables import print_legs
     from gcs_windplan.cost import CostChoice
-    from gcs_windplan.planner import plan_route
+    from gcs_windplan.planner import plan_route, plan_routes
 
     if cost is not None and cost != request.cost.name:
         request = replace(request, cost=CostChoice(cost))  # type: ignore[arg-type]
     if speed_changes is not None:
         request = replace(request, export=replace(request.export, speed_changes=speed_changes))
-    planned = plan_route(request)
+    planned = plan_routes(request, [request.cost])[0] if force else plan_route(request)
     files = render(planned)
     folder = output_folder(output, request)
     written = write(files, folder)

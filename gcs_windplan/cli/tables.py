@@ -27,13 +27,14 @@ def print_legs(plan: Plan) -> None:
     """The legs of a plan, a row each, and the totals."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     for name in ("leg", "track °", "heading °", "length m", "climb m", "to m AMSL", "ground m/s", "wind along",
-                 "across m/s", "time", "AGL m"):  # fmt: skip
+                 "across m/s", "time", "AGL m", *(["battery %"] if plan.battery else [])):  # fmt: skip
         table.add_column(name, justify="right")
-    for leg, target in zip(plan.legs, plan.waypoints[1:], strict=True):
+    left = [[f"{100 * share:.0f}"] for share in plan.battery.left[1:]] if plan.battery else [[]] * len(plan.legs)
+    for leg, target, rest in zip(plan.legs, plan.waypoints[1:], left, strict=True):
         table.add_row(
             f"{leg.number}", f"{leg.track_deg:03.0f}", f"{leg.heading_deg:03.0f}", f"{leg.length:.0f}",
             f"{leg.climb:+.0f}", f"{target.altitude:.1f}", f"{leg.ground_speed:.1f}", f"{leg.wind_along:+.1f}",
-            f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f} - {leg.height:.0f}",
+            f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f} - {leg.height:.0f}", *rest,
         )  # fmt: skip
     console = make_console()
     console.print(table)
@@ -75,20 +76,18 @@ def _head(plan: Plan) -> list[str]:
 
 def _energy(plan: Plan) -> list[str]:
     """What the route takes from the battery, where that is known."""
-    totals, airframe = plan.totals, plan.request.airframe
-    if airframe is None or totals.energy is None or totals.takeoff_energy is None:
+    totals, airframe, use = plan.totals, plan.request.airframe, plan.battery
+    if airframe is None or use is None or totals.energy is None:
         return []
-    ends = totals.takeoff_energy + (totals.landing_energy or 0.0) * (plan.request.finish == "land")
-    total, usable = totals.energy + ends, airframe.battery.usable_energy
-    line = (
-        f"energy {watt_hours(totals.energy)} Wh en route, take-off{' and landing' * (plan.request.finish == 'land')}"
-        f" {watt_hours(ends)} Wh more: {100 * total / usable:.0f} % of the usable {watt_hours(usable)} Wh"
-        f" ({airframe.name})"
-    )
+    line = f"energy {watt_hours(totals.energy)} Wh en route"
     if plan.spread is not None:
         low, median, high = (watt_hours(plan.spread.energy_at(quantile)) for quantile in (0.1, 0.5, 0.9))
-        line += f"; en route in the members: median {median} Wh, 10 - 90 % {low} - {high} Wh"
-    return [line]
+        line += f" (in the members: median {median}, 10 - 90 % {low} - {high} Wh)"
+    over = f", {watt_hours(use.missing)} Wh into the reserve" if use.missing else ", the reserve stays"
+    return [
+        f"{line}; {watt_hours(use.total)} Wh with take-off{' and landing' * (plan.request.finish == 'land')}, of"
+        f" {watt_hours(use.usable)} usable Wh{over} ({airframe.name})"
+    ]
 
 
 def watt_hours(joules: float) -> str:

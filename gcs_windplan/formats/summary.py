@@ -30,6 +30,7 @@ def format_summary(plan: Plan) -> str:
         "finish": request.finish,
         "totals": asdict(plan.totals),
         "ensemble": _ensemble(plan),
+        "battery": _battery(plan),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
         "notes": list(plan.notes),
@@ -53,6 +54,15 @@ def _ensemble(plan: Plan) -> dict[str, Any] | None:
         "member_seconds": known,
         "quantiles": {name: seconds if math.isfinite(seconds) else None for name, seconds in quantiles.items()},
     }
+
+
+def _battery(plan: Plan) -> dict[str, Any] | None:
+    """What the flight takes from the battery [J], and the share left at each waypoint; None without an airframe."""
+    use = plan.battery
+    if use is None:
+        return None
+    total = use.total if math.isfinite(use.total) else None
+    return {"total": total, "usable": use.usable, "allowed_with_reserve": use.allowed, "left": list(use.left)}
 
 
 def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:

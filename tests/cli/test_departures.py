@@ -30,7 +30,8 @@ def test_it_tells_when_to_fly():
     assert [row["departure"] for row in found] == [f"2026-05-01T{hour:02d}:00:00+00:00" for hour in (8, 13, 18)]
     morning, noon, evening = found
     assert morning["seconds"] < noon["seconds"] < evening["seconds"]
-    assert [row["feasible"] for row in found] == [True, True, False]
+    assert [row["feasible"] for row in found] == [True, False, False]
+    assert noon["reason"].endswith(" of 499 Wh")  # the battery's reserve is broken
     assert evening["reason"] == f"{10 - evening['member_seconds'].count(None)}/10 members"
     assert all(len(row["member_seconds"]) == 10 for row in found)
     assert None not in morning["member_seconds"]

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs_windplan.link.standin.airframe import Airframe
+from gcs_windplan.vehicle.pace import overlap_seconds, peak_speed, ramp_seconds
 
 Vector: TypeAlias = tuple[float, float, float]
 
-_JERK = 1.0  # [m/s³] WPNAV_JERK, ArduCopter's default
-_RISE = 0.3  # [s] fitted: half a ramp's time beyond what jerk and acceleration take
+_LEVEL = 2.5  # [m/s²] WPNAV_ACCEL, ArduCopter's default: what corners were fitted with
 SETTLE = 0.62  # [s] fitted: what a start from rest takes more
 _STRAIGHT = 1e-3  # [rad] a turn smaller than this is none
 
@@ -50,32 +50,12 @@ def leg_pace(airframe: Airframe, level: float, climb: float, ground_speed: float
     return Pace(speed, speed / ramp_seconds(speed, acceleration))
 
 
-def ramp_seconds(speed: float, acceleration: float) -> float:
-    """How long it takes from rest to a speed [m/s] with a limit on acceleration [m/s²] and jerk."""
-    if speed >= acceleration * (acceleration / _JERK + _RISE):
-        return speed / acceleration + acceleration / _JERK + _RISE
-    reached = (-_RISE + math.sqrt(_RISE**2 + 4 * speed / _JERK)) / 2  # the acceleration reached before it falls again
-    return 2 * (reached / _JERK + _RISE)
-
-
-def peak_speed(length: float, acceleration: float) -> float:
-    """The highest speed [m/s] on a leg [m] from rest to rest: its two ramps fill the leg."""
-    slow, fast = 0.0, length / (2 * _RISE)
-    for _ in range(60):
-        middle = (slow + fast) / 2
-        if middle * ramp_seconds(middle, acceleration) <= length:
-            slow = middle
-        else:
-            fast = middle
-    return slow
-
-
 def corner_speed(pace: Pace, turn: float, radius: float) -> float:
     """How fast a leg's pace goes around a corner [m/s] with a turn [rad], 0..π."""
     if turn < _STRAIGHT:
         return pace.speed
     ramp = pace.speed / pace.acceleration
-    overlap = _overlap(radius / (2 * math.sin(turn / 2)))
+    overlap = overlap_seconds(radius / (2 * math.sin(turn / 2)), _LEVEL)
     lost = max(0.0, ramp / 2 - overlap) + SETTLE / 2 * math.sin(turn / 2) ** 2
     return pace.speed * (1 - math.sqrt(min(1.0, 2 * lost / ramp)))
 
@@ -94,11 +74,3 @@ def turn_between(before: Vector, after: Vector) -> float:
     """The turn from one direction to the next [rad], 0..π."""
     cosine = sum(a * b for a, b in zip(before, after, strict=True)) / (math.hypot(*before) * math.hypot(*after))
     return math.acos(max(-1.0, min(1.0, cosine)))
-
-
-def _overlap(distance: float) -> float:
-    """For how long [s] the ramps of two legs overlap when the corner may be cut at this distance [m]."""
-    overlap = 0.15 + math.cbrt(6 * distance)
-    if overlap <= 2.8:
-        return overlap
-    return 2.8 + (math.sqrt(12.25 + 5 * (distance - 3.13)) - 3.5) / 2.5
