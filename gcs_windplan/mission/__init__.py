@@ -11,6 +11,7 @@ from gcs_windplan.mission.commands import (
     scales_place,
     takes_place,
 )
+from gcs_windplan.mission.duration import FlownLeg, MissionDuration, WindAlong, duration_of
 from gcs_windplan.mission.fence import (
     Fence,
     FenceCircle,
@@ -29,15 +30,19 @@ __all__ = [
     "Fence",
     "FenceCircle",
     "FencePolygon",
+    "FlownLeg",
     "Frame",
     "Home",
     "Mission",
+    "MissionDuration",
     "MissionItem",
     "RallyPoint",
     "ReturnPoint",
     "RoutePoint",
+    "WindAlong",
     "command_name",
     "degrees_e7",
+    "duration_of",
     "fence_items",
     "fence_of",
     "frame_name",

@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema
 
 from gcs_windplan.spec.areas import AreaModel, FenceModel
 from gcs_windplan.spec.rules import DEFAULT_CLEARANCE, mission_contradictions
-from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one
+from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one, suggestion
 from gcs_windplan.spec.values import (
     WEIGHT,
     Airspeed,
@@ -49,8 +49,10 @@ class VehicleModel(Section):
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
-        """No speed from anywhere."""
-        if "airspeed" not in fields and "airframe" not in fields:
+        """No speed from anywhere; a misspelt one is told anyway."""
+        known = list(cls.model_fields)
+        meant = {name if name in known else suggestion(name, known) for name in fields}
+        if not meant & {"airspeed", "airframe"}:
             yield Finding(("airspeed",), "is missing; add it, for example 'airspeed: 12 m/s'", at_key=True)
 
 

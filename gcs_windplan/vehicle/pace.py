@@ -24,6 +24,7 @@ from gcs_windplan.errors import InputError, Problem
 
 _JERK, _RISE = 1.0, 0.3  # [m/s³] WPNAV_JERK, ArduCopter's default; [s] fitted: how long the jerk itself takes to rise
 _STUCK = 0.01  # [m/s] slower than this it stands against the wind
+_NO_SHARE = 1e-9  # a slope's part of its length that is rounding
 _NO_LEG = 0.01  # [m] places nearer than this are one
 _SAME_SPEED = 1e-9  # [m/s]
 _HOP = 2.8  # [s] measured: the least that a return takes to come to rest above home
@@ -106,7 +107,8 @@ class LegTimes:
 
     `seconds` (n - 1,) [s] with the hold at each leg's end; infinite where the wind is too strong. `peaks` (n - 1,)
     [m/s]: the speed along its slope that each leg comes to. `losses` (n,) [s]: what slowing down at each point costs
-    beyond passing it at those speeds, the start and the last stop included.
+    beyond passing it at those speeds, the start and the last stop included; a hair below 0 where a leg is entered
+    faster than it goes on.
     """
 
     seconds: FloatArray
@@ -175,7 +177,7 @@ def peak_speed(length: float, acceleration: float, jerk: float = _JERK, rise: fl
     if length >= 2 * acceleration * most**2:
         return acceleration * (math.sqrt(most**2 + 4 * length / acceleration) - most) / 2
     if length < 8 * jerk * rise**3:
-        return length / (4 * math.sqrt(math.sqrt(length * rise / (8 * jerk))))
+        return math.sqrt(math.sqrt(length)) ** 3 / (4 * math.sqrt(math.sqrt(rise / (8 * jerk))))
     reached = math.cbrt(length * jerk**2 / 2)  # were there no rise; from here Newton's method only comes down
     for _ in range(30):
         part = reached / jerk + rise
@@ -287,7 +289,7 @@ def _legs(vectors: FloatArray, winds: FloatArray, told: FloatArray, halts: BoolA
 
 def _over(limit: float, share: float) -> float:
     """A limit on one component as a limit along the slope."""
-    return limit / share if share > 0 else math.inf
+    return limit / share if share > _NO_SHARE else math.inf
 
 
 def _limit(direction: FloatArray, wind: FloatArray, told: FloatArray, pace: Pace) -> float:
@@ -295,9 +297,9 @@ def _limit(direction: FloatArray, wind: FloatArray, told: FloatArray, pace: Pace
     speed, climb, descent = told
     east, north, up = direction
     level = math.hypot(east, north)
-    across, along = ((wind[1] * east - wind[0] * north), (wind[0] * east + wind[1] * north))
+    across, along = wind[1] * east - wind[0] * north, wind[0] * east + wind[1] * north
     vertical = _over(climb if up > 0 else descent, abs(up))
-    if level < 1e-9:
+    if level <= _NO_SHARE:
         return float(vertical) if math.hypot(*wind) <= pace.airspeed else 0.0
     spare = pace.airspeed**2 - (across / level) ** 2
     carried = math.sqrt(spare) + along / level if spare >= 0 else 0.0
