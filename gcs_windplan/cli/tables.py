@@ -40,8 +40,23 @@ def print_legs(plan: Plan) -> None:
     console.print(table)
     for line in summary_lines(plan):
         console.print(line, soft_wrap=True, markup=False)
+    if (flown := flown_line(plan)) is not None:
+        console.print(flown, soft_wrap=True, markup=False)
     for note in plan.notes:
         console.print(f"note: {note}", soft_wrap=True, markup=False)
+
+
+def flown_line(plan: Plan) -> str | None:
+    """How long the autopilot takes for the mission, in words; None where that is not known."""
+    from gcs_windplan.mission.planned import flown_duration
+
+    if not plan.request.export.speed_changes or (flown := flown_duration(plan)) is None:
+        return None
+    who = "PX4 may fly" if plan.request.vehicle.autopilot == "px4" else "ArduCopter flies"
+    return (
+        f"as {who} it, corners and acceleration counted: {clock(flown.en_route)} min en route,"
+        f" {clock(flown.total)} min in all"
+    )
 
 
 def summary_lines(plan: Plan) -> list[str]:

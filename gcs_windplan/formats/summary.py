@@ -7,6 +7,8 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from gcs_windplan.mission.planned import flown_duration
+
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
@@ -31,6 +33,7 @@ def format_summary(plan: Plan) -> str:
         "totals": asdict(plan.totals),
         "ensemble": _ensemble(plan),
         "battery": _battery(plan),
+        "as_flown": _as_flown(plan),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
         "notes": list(plan.notes),
@@ -54,6 +57,12 @@ def _ensemble(plan: Plan) -> dict[str, Any] | None:
         "member_seconds": known,
         "quantiles": {name: seconds if math.isfinite(seconds) else None for name, seconds in quantiles.items()},
     }
+
+
+def _as_flown(plan: Plan) -> dict[str, Any] | None:
+    """How long the autopilot takes en route and in all [s], corners and acceleration counted; None for a fixed-wing."""
+    flown = flown_duration(plan)
+    return None if flown is None else {"en_route_seconds": flown.en_route, "total_seconds": flown.total}
 
 
 def _battery(plan: Plan) -> dict[str, Any] | None:

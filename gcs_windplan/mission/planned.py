@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 
 from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.mission.build import RoutePoint, route_mission
+from gcs_windplan.mission.duration import MissionDuration, duration_of
 from gcs_windplan.mission.fence import Fence, FenceCircle, FencePolygon, RallyPoint, ReturnPoint
 from gcs_windplan.mission.items import Home, Mission
 from gcs_windplan.siting import choose_layers, site_points
+from gcs_windplan.vehicle import ARDUCOPTER_PACE, PX4_PACE
 
 if TYPE_CHECKING:
     from gcs_windplan.arrays import FloatArray
@@ -21,7 +23,19 @@ if TYPE_CHECKING:
 
 _SLOWEST = 0.01  # [m/s] no slower ground speed is commanded
 _HAIR = 1e-6  # [m] what rounding may have added to a whole number
+_FASTEST = 1000.0  # [m/s] no limit
 _LEVEL = 1.0  # [m] a leg shorter than this in plan is a climb or descent on the spot
+
+
+def flown_duration(plan: Plan) -> MissionDuration | None:
+    """How long the autopilot takes for a plan, corners and acceleration counted; None for a fixed-wing.
+
+    The plan's ground speeds are commanded, so that its wind is in them already; no lean angle holds the vehicle back.
+    """
+    if not plan.request.vehicle.hovers:
+        return None
+    pace = PX4_PACE if plan.request.vehicle.autopilot == "px4" else ARDUCOPTER_PACE
+    return duration_of(mission_of(plan), pace=replace(pace, airspeed=_FASTEST))
 
 
 def mission_of(plan: Plan) -> Mission:
