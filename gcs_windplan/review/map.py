@@ -177,6 +177,10 @@ def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     )  # fmt: skip
     nice = float(f"{strongest:.1g}")
     label = f"{nice:g} m/s wind, {above:.0f} m above ground"
+    if len(plan.request.wind.times) > 1:
+        label += ", at the departure"
+    if plan.request.members:
+        label += ", mean of all members"
     depth = (extent.north - extent.south) / (extent.east - extent.west)
     above_axes = 1 + 0.18 / (_SIDE * min(depth, 1.0))
     axes.quiverkey(arrows, 0.05, above_axes, nice, label, labelpos="E", coordinates="axes", fontproperties={"size": 9})
