@@ -21,6 +21,7 @@ from gcs_windplan.request import Request
 from gcs_windplan.shaping import shape_quickly
 from gcs_windplan.wind.field import WindField
 
+_NEAR_THE_END = 2.0  # durations of the flight
 _SAMPLES = 8  # of the wind along each leg
 
 
@@ -32,7 +33,7 @@ class Departure:
     none. `spread` is the same route in every member of an ensemble. `reason` says why it cannot be flown, or not in as
     many members as the request's `robust` asks for, or not with the battery. `wind` and `gust` are the strongest along
     the route in any member [m/s]; the gust is None where the forecast tells none. `worked` is the processor's time that
-    it took [s].
+    it took [s]. `robust` is the request's quantile.
     """
 
     moment: datetime
@@ -44,6 +45,14 @@ class Departure:
     gust: float | None = None
     reason: str | None = None
     worked: float = 0.0
+    robust: float = 0.5
+
+    @property
+    def key(self) -> float:
+        """What departures are compared by [s]: over an ensemble the time at the quantile, else the time."""
+        if self.seconds is None:
+            return float("inf")
+        return self.seconds if self.spread is None else self.spread.at(self.robust)
 
     @property
     def feasible(self) -> bool:
@@ -105,19 +114,28 @@ class _Job:
         wind, gust = self._strongest(found.points, begin)
         return Departure(
             moment, flight.totals.seconds, flight.totals.length, flight.totals.energy, spread, wind, gust,
-            self._reason(flight, spread), time.process_time() - since,
+            self._reason(flight, spread, begin), time.process_time() - since,
+            request.robust,
         )  # fmt: skip
 
-    def _reason(self, flight: Flight, spread: Spread | None) -> str | None:
+    def _reason(self, flight: Flight, spread: Spread | None, begin: float) -> str | None:
         """Why it is not to be flown: too few members can, or the battery's reserve is broken."""
         request = self.request
         if spread is not None and not np.isfinite(spread.at(request.robust)):
-            return f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members"
+            return (
+                f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members{self._ending(flight, begin)}"
+            )
         en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
         use = battery_use(request, flight, en_route)
         if use is None or use.missing == 0:
             return None
         return f"{use.total / 3600:.0f} of {use.allowed / 3600:.0f} Wh"
+
+    def _ending(self, flight: Flight, begin: float) -> str:
+        """Whether the forecast's end is near enough to be the reason, in words."""
+        times = self.request.wind.times
+        near = len(times) > 1 and begin + _NEAR_THE_END * flight.totals.seconds > times[-1]
+        return ", forecast ends" if near else ""
 
     def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""

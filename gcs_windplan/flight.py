@@ -147,7 +147,8 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
         i = int(stopped[0])
         if len(wind.times) > 1 and np.isfinite(parts.along[i]) and times[i] >= wind.times[-1] - _NEAR_THE_END:
             raise NoRouteError(
-                f"the forecast ends {wind.times[-1] / 60:.0f} min after departure, during leg {i + 1} at the latest:"
+                f"the forecast ends {(wind.times[-1] - times[0]) / 60:.0f} min after leaving, during leg {i + 1} at the"
+                " latest:"
                 " take a forecast that reaches further, or depart earlier.",
                 {"wind": len(stopped)},
             )

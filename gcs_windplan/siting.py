@@ -168,6 +168,15 @@ def _return_blocked(
 def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
     """Limits that contradict each other."""
     problems = []
+    airframe = request.airframe
+    if airframe is not None and request.vehicle.airspeed > airframe.maximum_airspeed:
+        text = (
+            f"{request.vehicle.airspeed:g} m/s is more than the airframe's maximum, {airframe.maximum_airspeed:g} m/s"
+        )
+        problems.append(Problem(f"{text}: lower it", "vehicle.airspeed"))
+    if airframe is not None and request.vehicle.type != airframe.vehicle.type:
+        text = f"the airframe ({airframe.name}) is a {airframe.vehicle.type}: leave `type` out"
+        problems.append(Problem(text, "vehicle.type"))
     limit = math.inf if request.max_height is None else request.max_height
     if request.clearance > limit:
         problems.append(Problem(f"{request.clearance:g} m is more than max_height, {limit:g} m: lower it", "clearance"))

@@ -59,13 +59,16 @@ def departures(
         from gcs_windplan.formats.departures import format_departures
 
         typer.echo(format_departures(request, found), nl=False)
-        return
+        raise typer.Exit(0 if any(one.feasible for one in found) else 1)
     from gcs_windplan.cli.departures_table import print_departures
 
     print_departures(request, found, took, cores)
+    if not any(one.feasible for one in found):
+        raise typer.Exit(1)
 
 
 _DAY = 24 * 3600.0
+_LONGEST_STEP = 30 * _DAY
 _CLOCK = re.compile(r"([01]?\d|2[0-3]):([0-5]\d)Z?")
 _STEPS = {"s": 1.0, "sec": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
 
@@ -94,7 +97,7 @@ def _after(begin: datetime, end: datetime, text: str) -> datetime:
 
     if end >= begin:
         return end
-    if _CLOCK.fullmatch(text.strip()):
+    if _CLOCK.fullmatch(text.strip()) and end.year < 9999:
         return end + timedelta(days=1)
     raise InputError(Problem(f"{end:%Y-%m-%d %H:%M} UTC lies before --from, {begin:%Y-%m-%d %H:%M} UTC", "--to"))
 
@@ -105,7 +108,7 @@ def _step(text: str) -> timedelta:
 
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*([a-z]+)", text.strip().lower())
     seconds = float(found[1]) * _STEPS[found[2]] if found is not None and found[2] in _STEPS else 0.0
-    if seconds < 1.0:
+    if not 1.0 <= seconds <= _LONGEST_STEP:
         raise InputError(Problem(f"{text!r} is no step; write for example 30min, 1h or 600s", "--every"))
     return timedelta(seconds=seconds)
 

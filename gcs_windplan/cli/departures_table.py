@@ -22,7 +22,7 @@ _BAR = 10  # characters of the longest time
 def print_departures(request: Request, found: Sequence[Departure], took: float, cores: int | None) -> None:
     """A row for each departure, the quickest one marked, and what the sweep took."""
     flown = [one for one in found if one.feasible]
-    best = min(flown, key=lambda one: one.seconds or 0.0, default=None)
+    best = min(flown, key=lambda one: one.key, default=None)
     longest = max((one.seconds or 0.0 for one in flown), default=1.0)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("departure UTC", min_width=11)
@@ -31,7 +31,7 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
     energy = {f"Wh{' (90 %)' * ensemble}": 11} if known else {}
     for name, width in {"time min": 5, **spread, **energy, "wind m/s": 4, "gust m/s": 4}.items():
         table.add_column(name, justify="right", min_width=width)
-    table.add_column("", no_wrap=True)
+    table.add_column("", no_wrap=True, overflow="ellipsis", max_width=20 if ensemble else 40)
     for one in found:
         mark = "  best" if one is best else ""
         table.add_row(f"{one.moment:%m-%d %H:%M}", *_cells(one, ensemble, known), _last(one, longest) + mark)
@@ -84,6 +84,11 @@ def _summary(
             f"{request.name}: quickest when leaving {best.moment:%Y-%m-%d %H:%M} UTC, {clock(best.seconds or 0.0)} min;"
             f" {len(flown)} of {len(found)} departures can be flown"
         ]
+    told: dict[str, Departure] = {}
+    for one in found:
+        if one.seconds is None and one.reason is not None:
+            told.setdefault(one.reason, one)
+    lines += [f"no route when leaving {one.moment:%m-%d %H:%M}: {reason}" for reason, one in list(told.items())[:3]]
     lines.append(f"wind: {request.wind.name}")
     members = f" x {len(request.members)} members" if request.members else ""
     worked = sum(one.worked for one in found)

@@ -26,6 +26,10 @@ _MOST_PANELS: Final = 512  # of a leg, before any is halved
 _HALVINGS: Final = 10
 _MOST_ROUNDS: Final = 12  # of putting the clock in again: each gains a factor of 10 and more
 _SAME_TIME: Final = 1e-3  # [s]
+_SHORT: Final = 30.0  # [s] on legs so short the clock runs evenly
+_HOURS: Final = 12  # parts of a longer leg on each of which it does
+_TURNS: Final = 6  # of finding out how, and a change that needs no further one
+_SAME_FACE: Final = 3e-4
 _CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
 _SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
 
@@ -55,9 +59,9 @@ def integrate(
 ) -> LegIntegrals:
     """Integrate along straight legs (n, 3).
 
-    `when` (n, 2) is at what time each leg begins and ends [s since departure]: in between the clock runs evenly along
-    the leg. Without it the wind is taken as at the departure. A leg that lasts beyond the last time of a changing wind
-    cannot be flown.
+    `when` (n, 2) is at what time each leg begins and ends [s since departure]; on a leg of more than half a minute the
+    clock runs in between as the wind lets the vehicle go. Without it the wind is taken as at the departure. A leg that
+    lasts beyond the last time of a changing wind cannot be flown.
     """
     return integrate_each((wind,), vehicle, starts, ends, when)[0]
 
@@ -77,18 +81,28 @@ def integrate_each(
     panels = np.clip(np.ceil(lengths / apart), 1, _MOST_PANELS).astype(np.int64)  # two samples each
     last = min((float(wind.times[-1]) for wind in winds if len(wind.times) > 1), default=np.inf)
     known = np.minimum(when, last) if when is not None else None  # what lasts longer is refused below
+    performance = performance_of(vehicle)
+    face: FloatArray | None = (
+        None  # of the legs' clocks: the share of a leg's time that has gone at equal ways along it
+    )
 
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
         points = starts[leg] + share[:, None] * vectors[leg]
         if known is None:
             return at_each(winds, points)
-        return at_each(winds, points, known[leg, 0] + share * (known[leg, 1] - known[leg, 0]))
+        gone = share if face is None else _gone(face[leg], share)
+        return at_each(winds, points, known[leg, 0] + gone * (known[leg, 1] - known[leg, 0]))
+
+    if known is not None and len(vectors):
+        for _ in range(_TURNS):
+            before, face = face, _clock_faces(performance, vectors, known, wind_at)  # each by the one before
+            if face is None or (before is not None and np.abs(face - before).max() < _SAME_FACE):
+                break
 
     leg, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
     first = np.zeros(len(vectors) + 1, dtype=np.int64)
     np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
     weights = (widths[:, None] * _SIMPSON).ravel()
-    performance = performance_of(vehicle)
     results = []
     for member in range(len(winds)):
         blows = np.ascontiguousarray(sampled[:, :, 3 * member : 3 * member + 3]).reshape(-1, 3)
@@ -98,6 +112,43 @@ def integrate_each(
             seconds = np.where(when[:, 0] + seconds <= last, seconds, np.inf)
         results.append(LegIntegrals(seconds, table[:, 1], table[:, 2], table[:, 3]))
     return results
+
+
+def _clock_faces(
+    performance: Performance,
+    vectors: FloatArray,
+    when: FloatArray,
+    wind_at: Callable[[IntArray, FloatArray], FloatArray],
+) -> FloatArray | None:
+    """The share of each leg's time that has gone at equal ways along it (n, 13); None where all legs are short.
+
+    On short legs, and where one cannot be flown, the clock runs evenly.
+    """
+    slow = np.flatnonzero(when[:, 1] - when[:, 0] > _SHORT)
+    if not len(slow):
+        return None
+    even = np.linspace(0.0, 1.0, _HOURS + 1)
+    face = np.tile(even, (len(vectors), 1))
+    leg = np.repeat(slow, _HOURS)
+    middles = np.tile((even[:-1] + even[1:]) / 2, len(slow))
+    blows = wind_at(leg, middles)
+    blows = np.ascontiguousarray(blows.reshape(len(leg), -1, 3).mean(axis=1))  # of members their mean
+    alone = np.arange(len(leg) + 1, dtype=np.int64)
+    paces = integrate_legs(performance, vectors[leg], alone, np.ones(len(leg)), blows)[:, 0].reshape(-1, _HOURS)
+    known = np.isfinite(paces).all(axis=1) & (paces.sum(axis=1) > 0)
+    gone = np.cumsum(paces[known], axis=1)
+    face[slow[known], 1:] = gone / gone[:, -1:]
+    return face
+
+
+def _gone(face: FloatArray, share: FloatArray) -> FloatArray:
+    """The share of the time that has gone at shares of the way (k,), by the clock faces of their legs (k, 13)."""
+    place = share * _HOURS
+    hour = np.minimum(place.astype(np.int64), _HOURS - 1)
+    row = np.arange(len(share))
+    before = face[row, hour]
+    gone: FloatArray = before + (place - hour) * (face[row, hour + 1] - before)
+    return gone
 
 
 def clocked(

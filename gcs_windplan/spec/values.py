@@ -256,7 +256,7 @@ Reserve = Annotated[float, Measure(NUMBER, at_least=0, at_most=0.9)]
 Coefficient = Annotated[float, Measure(NUMBER, at_least=0)]
 PositiveNumber = Annotated[float, Measure(NUMBER, above=0)]
 PositiveArea = Annotated[float, Measure(AREA, above=0)]
-Mass = Annotated[float, Measure(MASS, above=0)]
+Mass = Annotated[float, Measure(MASS, above=0, at_most=1000)]
 Capacity = Annotated[float, Measure(ENERGY, at_least=3600)]  # a plain number below 1 Wh was meant as Wh
 PositivePower = Annotated[float, Measure(POWER, above=0)]
 AirDensity = Annotated[float, Measure(DENSITY, at_least=0.1, at_most=2)]

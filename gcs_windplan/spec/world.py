@@ -278,6 +278,8 @@ class WindModel(Section):
         yield from only_with(fields, "members", "forecast")
         yield from only_with(fields, "profile", "constant", "paper", "forecast")
         members = fields.get("members")
+        if isinstance(members, list | tuple) and not members:
+            yield Finding(("members",), "names no member; write `all`, or a list of their numbers")
         if isinstance(members, list | tuple) and len(set(map(str, members))) < len(members):
             yield Finding(("members",), "names a member twice")
 

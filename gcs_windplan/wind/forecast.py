@@ -29,6 +29,7 @@ from gcs_windplan.wind.placement import Box, Part, axes_directions, part_of
 from gcs_windplan.wind.sheets import SURFACE, Level, Quantity, Sheet
 
 ROUGHNESS = 0.1  # [m] where neither file nor mission tells: Davenport's class "roughly open" (WMO-No. 8, annex 5.C)
+_FASTEST = 200.0  # [m/s] no wind on earth blows faster: 113 m/s at the ground (WMO), some 130 in the jet stream
 _HIGHEST_CARRIED = 300.0  # [m above ground] no law of the surface layer reaches farther
 
 
@@ -336,6 +337,12 @@ def _check_complete(
         raise WindError(
             f"the wind is missing at {len(missing)} of {values[..., 0].size} nodes, first at {when}{levels[level]}, row"
             f" {row}, column {column} of the part that is used: fill it or cut it off"
+        )
+    fastest = float(np.abs(values).max(initial=0.0))
+    if fastest > _FASTEST:
+        raise WindError(
+            f"it has a wind of {fastest:g} m/s, which is none: a missing value that the file does not mark? Mark it"
+            " (_FillValue), fill it or cut it off"
         )
     if not np.isfinite(beyond).all():
         raise WindError("the heights of its levels are missing at some nodes: fill them or cut them off")

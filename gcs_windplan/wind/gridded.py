@@ -14,7 +14,7 @@ from gcs_windplan.errors import WindError
 from gcs_windplan.kernels.interpolation import Columns, Law, interpolate_columns
 from gcs_windplan.wind.chart import to_grid
 from gcs_windplan.wind.field import STEADY, Ground
-from gcs_windplan.wind.placement import Placement
+from gcs_windplan.wind.placement import Placement, advice, may_extend
 
 _EDGE = 1.0  # [m] a point may lie this far outside of the grid and still be taken as on its edge
 _MANY = 50_000  # points that are worth more than one core
@@ -88,8 +88,7 @@ class GriddedWind:
         if not np.isfinite(points).all():
             raise WindError("the wind is asked for at a place that is not finite")
         places = self.placement.at(points)
-        if not self.extend:
-            self._check_area(points, places)
+        self._check_area(points, places)
         return np.ascontiguousarray(places)
 
     def interpolated(self, places: FloatArray, z: FloatArray, ground: FloatArray, when: FloatArray) -> FloatArray:
@@ -118,14 +117,13 @@ class GriddedWind:
 
     def _check_area(self, points: FloatArray, places: FloatArray) -> None:
         missing = self.placement.misses(places)
-        if not len(missing) or missing.max() <= _EDGE:
+        if not len(missing) or missing.max() <= (may_extend(self.placement) if self.extend else _EDGE):
             return
         worst = int(np.argmax(missing))
         latitude, longitude = self.placement.frame.to_geographic(points[worst : worst + 1])
         raise WindError(
             f"the wind ends {missing[worst] / 1000:.1f} km short of {latitude[0]:.5f}, {longitude[0]:.5f}:"
-            f" {self.placement.covers()} ({self.name}); take a larger file, or say `extend: nearest` to take the wind"
-            " at its edge"
+            f" {self.placement.covers()} ({self.name}); {advice(self.placement, float(missing[worst]))}"
         )
 
 

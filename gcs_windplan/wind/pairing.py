@@ -10,6 +10,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import Literal, TypeAlias
 
 from gcs_windplan.errors import WindError
@@ -19,7 +20,7 @@ from gcs_windplan.wind.sheets import Catalogue, Grid, Level, LevelKind, Quantity
 Members: TypeAlias = Literal["all"] | tuple[int, ...] | None
 
 STEADY_FOR = 3 * 3600.0  # [s] how far from its one time a file is used where a departure is told: our choice
-CONTROL = 0  # the member that no perturbation was added to
+_GAP = 2.5  # times the shortest step between two times: a longer one is said
 _PARTNERS: tuple[tuple[Quantity, Quantity], ...] = (("u", "v"), ("speed", "direction"))
 _ASL: tuple[LevelKind, ...] = ("pressure", "model", "altitude")
 
@@ -159,11 +160,14 @@ def choose_times(times: Sequence[float], span: Span) -> tuple[tuple[float, ...],
             f"the departure {say_time(start)} lies {outside / 3600:.1f} h outside of its times, {say_time(times[0])} to"
             f" {say_time(times[-1])}"
         )
-    first = max(time for time in times if time <= start)
-    after = [time for time in times if time >= start + span.lasting]
+    first = max(time for time in times[:-1] if time <= start)  # two at least: one alone would be a steady wind
+    after = [time for time in times if time >= start + span.lasting and time > first]
     last = after[0] if after else times[-1]
     kept = tuple(time for time in times if first <= time <= last)
-    return kept, f"{say_time(kept[0])} to {say_time(kept[-1])}"
+    steps = [later - earlier for earlier, later in pairwise(kept)]
+    usual = min(later - earlier for earlier, later in pairwise(times))
+    gap = f", with a gap of {max(steps) / 3600:g} h" if max(steps) > _GAP * usual else ""
+    return kept, f"{say_time(kept[0])} to {say_time(kept[-1])}{gap}"
 
 
 def say_time(seconds: float) -> str:

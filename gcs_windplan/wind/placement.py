@@ -23,6 +23,7 @@ from gcs_windplan.wind.sheets import Grid
 Box: TypeAlias = tuple[float, float, float, float]
 
 METRES_PER_DEGREE = 111_195.0  # [m] of a meridian on the mean earth radius, 6371 km (IUGG 1980)
+EXTENDED = 50_000.0  # [m] how far beyond the grid's edge the edge's wind is taken where asked for, or one spacing
 POINT_REACH = 15_000.0  # [m] how far from its place a forecast for one place is used: our choice, a model's cell or two
 _LATTICE = 17  # points a side of the area whose latitudes and longitudes have to be read
 _WHOLE = 300_000.0  # [m] about the origin that is kept of a projected grid where no area is told
@@ -178,22 +179,33 @@ class Part:
     placement: Placement
 
 
-def part_of(grid: Grid, frame: LocalFrame, area: Box | None, extend: bool = False) -> Part:
+def part_of(grid: Grid, frame: LocalFrame, area: Box | None, extend: bool = False, anywhere: bool = False) -> Part:
     """The rows and columns that the area needs and a cell more, everything near where no area is told.
 
-    Raises `WindError` if the grid lies wholly outside of the area, unless `extend`.
+    Raises `WindError` if the grid lies wholly outside of the area, with `extend` if it does so by more than 50 km and a
+    spacing, and never with `anywhere`.
     """
     part = _regular_part(grid, frame, area) if grid.regular else _mapped_part(grid, frame, area)
-    if area is not None and not extend:
-        corners = _lattice_of(area)
-        gap = float(part.placement.misses(part.placement.at(corners)).min())
-        if gap > 1.0:
+    if area is not None and not anywhere:
+        gap = float(part.placement.misses(part.placement.at(_lattice_of(area))).min())
+        if gap > (may_extend(part.placement) if extend else 1.0):
             whole = part_of(grid, frame, None).placement.covers()
             raise WindError(
-                f"the wind ends {gap / 1000:.0f} km short of the area: {whole}; take another file, or"
-                " say `extend: nearest` to take the wind at its edge"
+                f"the wind ends {gap / 1000:.0f} km short of the area: {whole}; {advice(part.placement, gap)}"
             )
     return part
+
+
+def may_extend(placement: Placement) -> float:
+    """How far beyond its edge a grid's wind may be taken [m]."""
+    return max(EXTENDED, placement.spacing if math.isfinite(placement.spacing) else 0.0)
+
+
+def advice(placement: Placement, gap: float) -> str:
+    """What to do about a gap [m] between a grid and a place."""
+    if gap > may_extend(placement):
+        return "take another file"
+    return "take another file, or say `extend: nearest` to take the wind at its edge"
 
 
 def _regular_part(grid: Grid, frame: LocalFrame, area: Box | None) -> Part:

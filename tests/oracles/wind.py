@@ -15,30 +15,23 @@ def naive_interpolate_columns(
 ) -> FloatArray:
     """What `kernels.interpolation.interpolate_columns` computes (n, 2), one axis after the other, height first."""
     rows = []
-    nt, ny, nx = field.winds.shape[:3]
     for (row, column), height, below, time in zip(places[:, :2], z, ground, when, strict=True):
-        at_height = np.array(
-            [
-                [[naive_column(field, law, (t, y, x), height, below) for x in range(nx)] for y in range(ny)]
-                for t in range(nt)
-            ]
-        )
-        found = []
-        for part in range(2):
-            near = _weigh(at_height[..., part], field.columns, column)
-            near = _weigh(near, field.rows, row)
-            found.append(float(_weigh(near, field.times, time)))
+        found = np.zeros(2)
+        shares = [
+            _shares(axis, value) for axis, value in ((field.times, time), (field.rows, row), (field.columns, column))
+        ]
+        for t, late in enumerate(shares[0]):
+            for y, north in enumerate(shares[1]):
+                for x, east in enumerate(shares[2]):
+                    if late * north * east >= 1e-7:
+                        found += late * north * east * np.array(naive_column(field, law, (t, y, x), height, below))
         rows.append(found)
     return np.array(rows)
 
 
-def _weigh(values: FloatArray, axis: FloatArray, where: float):
-    """The last axis interpolated away; what does not count may be NaN."""
-    if values.ndim > 1 and values.shape[-1] != len(axis):
-        raise ValueError("the axis is not the last one")
-    weights = np.array([np.interp(where, axis, row) for row in np.eye(len(axis))])
-    kept = weights > 0
-    return (values[..., kept] * weights[kept]).sum(axis=-1)
+def _shares(axis: FloatArray, value: float) -> list[float]:
+    """How much each node of an axis counts."""
+    return [float(np.interp(value, axis, node)) for node in np.eye(len(axis))]
 
 
 def naive_column(field: Columns, law: Law, node: tuple[int, int, int], z: float, ground: float) -> tuple[float, float]:

@@ -89,7 +89,7 @@ def test_the_other_power_models() -> None:
 
 CASES = [
     ("name", None, "1:1: name: is missing; add it, for example 'name: small quadcopter'"),
-    ("mass", "0", "2:7: mass: must be above 0 kg, not 0"),
+    ("mass", "0", "2:7: mass: must be above 0 kg and at most 1000 kg, not 0"),
     ("mass", "4 l", "2:7: mass: unknown unit 'l' for a mass; known units: kg, g, lb"),
     (
         "mass",

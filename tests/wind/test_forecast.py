@@ -277,13 +277,20 @@ def test_one_time_is_steady_but_only_for_three_hours_about_it(trap: Trap) -> Non
     assert "is 4.0 h from the departure" in _say(path, ground=_flat, departure=NOON + timedelta(hours=4))
 
 
-def test_an_area_elsewhere_is_an_error_unless_extended(trap: Trap) -> None:
-    """The file reaches 53° north; the box about 55° north begins 10 km further south than 55°."""
-    frame, box = LocalFrame(GeoPoint(55.0, 0.0)), (-10_000.0, -10_000.0, 10_000.0, 10_000.0)
-    assert re.search(r"ends 21[23] km short of the area", _say(trap(), frame, ground=_flat, area=box))
+def test_an_area_elsewhere_is_an_error_unless_it_is_near_and_extended(trap: Trap) -> None:
+    """The file reaches 53° north, in steps of 70 km and more; a box about 53.5° begins 46 km further north."""
+    frame, box = LocalFrame(GeoPoint(53.5, 0.0)), (-10_000.0, -10_000.0, 10_000.0, 10_000.0)
+    message = _say(trap(), frame, ground=_flat, area=box)
+    assert re.search(r"ends 4[56] km short of the area", message)
+    assert "extend: nearest" in message
     wind = read(trap(), frame, _flat, area=box, extend=True)
     assert wind.name.endswith("extended")
     np.testing.assert_allclose(wind.at(np.array([[0.0, 0.0, 10.0]])), FROM_WEST, atol=ONE_CM_PER_SECOND)
+    far = LocalFrame(GeoPoint(56.0, 0.0))
+    for options in ({}, {"extend": True}):
+        message = _say(trap(), far, ground=_flat, area=box, **options)
+        assert "km short of the area" in message
+        assert "extend" not in message
 
 
 def test_the_title_of_the_file_is_told() -> None:
@@ -294,3 +301,33 @@ def test_the_title_of_the_file_is_told() -> None:
     speed = np.linalg.norm(wind.at(corners), axis=1)
     assert speed.min() > 2
     assert speed.max() < 12
+
+
+@pytest.mark.parametrize("length", [20_000, 30_000, 40_000])
+def test_a_classic_file_that_was_cut_short_is_an_error(tmp_path: Path, length: int) -> None:
+    """netCDF4 itself reads zeros for what is missing, which unpack to some wind."""
+    whole = _real("bella_lui_weather_data_ERA5.nc").read_bytes()
+    cut = tmp_path / "cut.nc"
+    cut.write_bytes(whole[:length])
+    assert "cut short" in _say(cut, DAVOS, departure=datetime(2020, 2, 22, 14, tzinfo=UTC))
+
+
+def test_missing_values_that_nobody_marked_are_no_wind(trap: Trap) -> None:
+    path = trap()
+    with netCDF4.Dataset(path, "a") as file:
+        file.set_auto_mask(False)
+        file["u"][0, 0, 2, 2] = -9998.0
+    assert "a wind of 9998 m/s, which is none" in _say(path, ground=_flat)
+
+
+def test_the_last_time_is_not_taken_for_a_steady_wind(trap: Trap) -> None:
+    wind = read(trap(hours=[0.0, 3.0, 6.0]), GREENWICH, _flat, NOON + timedelta(hours=6))
+    assert list(wind.times) == [-3 * 3600.0, 0.0]
+    with pytest.raises(WindError, match="after its last usable"):
+        wind.at(np.array([[0.0, 0.0, 10.0]]), 60.0)
+
+
+def test_a_gap_between_its_times_is_said(trap: Trap) -> None:
+    wind = read(trap(hours=[0.0, 1.0, 13.0]), GREENWICH, _flat, NOON + timedelta(hours=0.5))
+    assert "with a gap of 12 h" in wind.name
+    assert "gap" not in read(trap(hours=[0.0, 3.0, 6.0]), GREENWICH, _flat, NOON).name

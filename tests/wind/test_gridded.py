@@ -117,6 +117,8 @@ def test_outside_of_the_area_is_an_error_unless_extended() -> None:
         _at(_wind(), 0, 122_000, 100)
     extended = _at(_wind(extend=True), 0, 122_000, 100)
     np.testing.assert_allclose(extended, [10, 0, 0], atol=ONE_CM_PER_SECOND)
+    with pytest.raises(WindError, match=r"ends 1[23]\d\.\d km short"):  # more than one spacing
+        _at(_wind(extend=True), 0, 240_000, 100)
 
 
 def test_a_forecast_for_one_place_reaches_15_km() -> None:

@@ -56,7 +56,12 @@ def test_an_area_outside_is_an_error_that_says_by_how_much_unless_it_is_extended
     small, frame = grid(np.arange(40, 45, 0.5), np.arange(0, 5, 0.5)), LocalFrame(GeoPoint(46.0, 2.0))
     with pytest.raises(WindError, match=r"ends 14[67] km short of the area: it covers latitudes 40\.000 to 44\.500"):
         part_of(small, frame, AREA)
-    assert len(part_of(small, frame, AREA, extend=True).rows)
+    with pytest.raises(WindError, match="take another file"):
+        part_of(small, frame, AREA, extend=True)
+    near = LocalFrame(GeoPoint(44.9, 2.0))
+    with pytest.raises(WindError, match="extend: nearest"):
+        part_of(small, near, AREA)
+    assert len(part_of(small, near, AREA, extend=True).rows)
 
 
 def test_latitudes_that_stand_twice_are_refused():

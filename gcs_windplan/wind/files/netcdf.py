@@ -21,7 +21,7 @@ from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_axes import CLOCK, Role, role
 from gcs_windplan.wind.files.cf_names import WIND, Meaning, looks_like_wind, meaning
 from gcs_windplan.wind.files.netcdf_axes import Axes, Levels
-from gcs_windplan.wind.files.netcdf_file import NetcdfFile
+from gcs_windplan.wind.files.netcdf_file import NetcdfFile, refuse_cut_short
 from gcs_windplan.wind.files.netcdf_grid import Layout, Layouts
 from gcs_windplan.wind.files.units import check_units, converted, unlogged
 from gcs_windplan.wind.sheets import SURFACE, Catalogue, Level, Quantity, Sheet
@@ -38,6 +38,7 @@ def open_netcdf(path: Path) -> Iterator[Catalogue]:
     whose times, levels or units cannot be told, if there is no other in the file. What else cannot be used stands in
     `Catalogue.unused`.
     """
+    refuse_cut_short(path)
     try:
         dataset = netCDF4.Dataset(path)
     except (OSError, RuntimeError) as error:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import warnings
 from collections import OrderedDict
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.errors import WindError
 from gcs_windplan.wind.files.cf import Variable
 
 #: The places wanted along a dimension.
@@ -21,6 +23,22 @@ _KEPT = 256_000_000  # [bytes] that are kept for the next sheets
 
 #: Single precision is kept as it is.
 _Block: TypeAlias = npt.NDArray[np.floating[Any]]
+
+
+def refuse_cut_short(path: Path) -> None:
+    """Raise `WindError` for a classic file that ends before its values do: netCDF4 reads what is missing as zeros."""
+    with path.open("rb") as file:
+        classic = file.read(4) in (b"CDF\x01", b"CDF\x02")
+    if not classic:
+        return
+    from scipy.io import netcdf_file
+
+    try:
+        netcdf_file(path, "r", mmap=False).close()
+    except Exception as error:  # its parser fails in as many ways as a file can end
+        raise WindError(
+            f"{path}: the file was cut short, or is damaged: it ends before its values do; fetch it again"
+        ) from error
 
 
 class NetcdfFile:

@@ -233,7 +233,7 @@ def part_at(grid: Grid, place: GeoPoint) -> Part:
     """
     frame = LocalFrame(place)
     if grid.regular:
-        part = part_of(grid, frame, POINT, extend=True)
+        part = part_of(grid, frame, POINT, anywhere=True)
         outside = float(part.placement.misses(part.placement.at(np.zeros((1, 3))))[0])
         if outside <= _ON_EDGE:
             return part
@@ -244,7 +244,7 @@ def part_at(grid: Grid, place: GeoPoint) -> Part:
     small = Grid(grid.latitudes[window], grid.longitudes[window], grid.name)
     node = float(grid.latitudes[row, column]), float(grid.longitudes[row, column])
     if way < ways_between(small.latitudes, small.longitudes, *node).max():
-        part = part_of(small, frame, POINT, extend=True)
+        part = part_of(small, frame, POINT, anywhere=True)
         if float(part.placement.misses(part.placement.at(np.zeros((1, 3))))[0]) <= _ON_EDGE:
             return Part(rows[part.rows], columns[part.columns], part.placement)
     raise _outside(way, place, f"the nearest node of its grid ({grid.name}) is {node[0]:.3f}, {node[1]:.3f}")

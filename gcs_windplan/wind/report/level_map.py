@@ -93,7 +93,7 @@ def map_around(
     winds, chosen, moment = _chosen(catalogues, asked, level, choice)
     part_at(winds.grid, place)  # which raises outside of it
     frame = LocalFrame(place)
-    excerpt = Excerpt(winds, part_of(winds.grid, frame, (-radius, -radius, radius, radius), extend=True), moment)
+    excerpt = Excerpt(winds, part_of(winds.grid, frame, (-radius, -radius, radius, radius), anywhere=True), moment)
     north, east = np.linspace(radius, -radius, ROWS), np.linspace(-radius, radius, COLUMNS)
     x, y = np.meshgrid(east, north)
     places = excerpt.part.placement.at(np.stack([x.ravel(), y.ravel()], axis=-1))

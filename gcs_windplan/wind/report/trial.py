@@ -56,7 +56,7 @@ def _made(winds: Winds, first: float | None, lasting: float) -> str:
     frame = LocalFrame(_middle(winds.grid))
     moment = None if first is None else datetime.fromtimestamp(first, UTC)
     wanted = Wanted(frame, departure=moment, lasting=lasting, area=POINT)
-    made = Assembly(winds, wanted, part_of(winds.grid, frame, POINT, extend=True)).made("")
+    made = Assembly(winds, wanted, part_of(winds.grid, frame, POINT, anywhere=True)).made("")
     return made.name.removeprefix(": ")
 
 
