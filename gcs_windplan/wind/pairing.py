@@ -20,7 +20,7 @@ from gcs_windplan.wind.sheets import Catalogue, Grid, Level, LevelKind, Quantity
 Members: TypeAlias = Literal["all"] | tuple[int, ...] | None
 
 STEADY_FOR = 3 * 3600.0  # [s] how far from its one time a file is used where a departure is told: our choice
-_GAP = 2.5  # times the shortest step between two times: a longer one is said
+_GAP = 2.5  # times the usual step between two times, their median: a longer one is said
 _PARTNERS: tuple[tuple[Quantity, Quantity], ...] = (("u", "v"), ("speed", "direction"))
 _ASL: tuple[LevelKind, ...] = ("pressure", "model", "altitude")
 
@@ -165,7 +165,7 @@ def choose_times(times: Sequence[float], span: Span) -> tuple[tuple[float, ...],
     last = after[0] if after else times[-1]
     kept = tuple(time for time in times if first <= time <= last)
     steps = [later - earlier for earlier, later in pairwise(kept)]
-    usual = min(later - earlier for earlier, later in pairwise(times))
+    usual = sorted(later - earlier for earlier, later in pairwise(times))[(len(times) - 1) // 2]
     gap = f", with a gap of {max(steps) / 3600:g} h" if max(steps) > _GAP * usual else ""
     return kept, f"{say_time(kept[0])} to {say_time(kept[-1])}{gap}"
 

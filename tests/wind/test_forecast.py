@@ -328,6 +328,6 @@ def test_the_last_time_is_not_taken_for_a_steady_wind(trap: Trap) -> None:
 
 
 def test_a_gap_between_its_times_is_said(trap: Trap) -> None:
-    wind = read(trap(hours=[0.0, 1.0, 13.0]), GREENWICH, _flat, NOON + timedelta(hours=0.5))
-    assert "with a gap of 12 h" in wind.name
+    wind = read(trap(hours=[0.0, 1.0, 2.0, 13.0]), GREENWICH, _flat, NOON + timedelta(hours=0.5))
+    assert "with a gap of 11 h" in wind.name
     assert "gap" not in read(trap(hours=[0.0, 3.0, 6.0]), GREENWICH, _flat, NOON).name
