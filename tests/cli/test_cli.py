@@ -187,7 +187,7 @@ BAD = {
     ),
     "wind without v": (lambda d: {"wind": wind_from(d / "u.nc", v=False)}, "no v", "wind"),
     "NaN in the wind": (lambda d: {"wind": wind_from(d / "n.nc", hole=True)}, "n.nc", "wind"),
-    "wind elsewhere": (lambda d: {"wind": wind_from(d / "f.nc", far=True)}, "extend", "wind"),
+    "wind elsewhere": (lambda d: {"wind": wind_from(d / "f.nc", far=True)}, "km short of the area", "wind"),
     "clearance above the limit": (
         lambda d: {"clearance": "200 m"},
         "120 m is below the clearance",
