@@ -166,7 +166,7 @@ class Assembly:
         beyond = (
             np.stack([heights[level] for level in upwards], axis=-1) if upwards else np.empty((*values.shape[:3], 0))
         )
-        _check_complete(values, beyond, terrain, levels, winds)
+        self._check_complete(values, beyond, terrain, levels)
         above = [level.value if level.kind == "height" else self.wanted.known_height for level in winds.above]
         return Columns(
             winds=np.ascontiguousarray(values),
@@ -317,32 +317,37 @@ class Assembly:
         )
         return replace(like, columns=columns, law=Law(POWER, 0.0, math.inf))  # the same at every height
 
+    def _check_complete(self, values: FloatArray, beyond: FloatArray, terrain: FloatArray, levels: list[Level]) -> None:
+        """Raise `WindError` that tells the first place where a value is missing; under the forecast's ground it may be.
 
-def _check_complete(
-    values: FloatArray, beyond: FloatArray, terrain: FloatArray, levels: list[Level], winds: Winds
-) -> None:
-    """Raise `WindError` that tells the first place where a value is missing; below the forecast's ground it may be.
+        What is missing there becomes 0: no wind is ever taken from it.
+        """
+        na = len(self.winds.above)
+        hidden = np.zeros(values.shape[:4], dtype=bool)
+        hidden[:, :, :, na:] = beyond <= terrain[None, :, :, None]
+        values[hidden & ~np.isfinite(values).all(axis=4)] = 0.0
+        missing = np.argwhere(~np.isfinite(values).all(axis=4))
+        if len(missing):
+            time, row, column, level = missing[0]
+            moment = self.winds.times[time]
+            when = "" if moment is None else f"{say_time(moment)}, "
+            raise WindError(
+                f"the wind is missing at {len(missing)} of {values[..., 0].size} nodes, first at {when}{levels[level]},"
+                f" {self._place(row, column)}: fill it or cut it off"
+            )
+        fastest = float(np.abs(values).max(initial=0.0))
+        if fastest > _FASTEST:
+            raise WindError(
+                f"it has a wind of {fastest:g} m/s, which is none: a missing value that the file does not mark? Mark it"
+                " (_FillValue), fill it or cut it off"
+            )
+        if not np.isfinite(beyond).all():
+            raise WindError("the heights of its levels are missing at some nodes: fill them or cut them off")
 
-    What is missing there becomes 0: no wind is ever taken from it.
-    """
-    na = len(winds.above)
-    hidden = np.zeros(values.shape[:4], dtype=bool)
-    hidden[:, :, :, na:] = beyond <= terrain[None, :, :, None]
-    values[hidden & ~np.isfinite(values).all(axis=4)] = 0.0
-    missing = np.argwhere(~np.isfinite(values).all(axis=4))
-    if len(missing):
-        time, row, column, level = missing[0]
-        moment = winds.times[time]
-        when = "" if moment is None else f"{say_time(moment)}, "
-        raise WindError(
-            f"the wind is missing at {len(missing)} of {values[..., 0].size} nodes, first at {when}{levels[level]}, row"
-            f" {row}, column {column} of the part that is used: fill it or cut it off"
+    def _place(self, row: int, column: int) -> str:
+        """A node of the part, for people."""
+        grid, i, j = self.winds.grid, self.part.rows[row], self.part.columns[column]
+        latitude, longitude = (
+            (grid.latitudes[i], grid.longitudes[j]) if grid.regular else (grid.latitudes[i, j], grid.longitudes[i, j])
         )
-    fastest = float(np.abs(values).max(initial=0.0))
-    if fastest > _FASTEST:
-        raise WindError(
-            f"it has a wind of {fastest:g} m/s, which is none: a missing value that the file does not mark? Mark it"
-            " (_FillValue), fill it or cut it off"
-        )
-    if not np.isfinite(beyond).all():
-        raise WindError("the heights of its levels are missing at some nodes: fill them or cut them off")
+        return f"latitude {latitude:g}, longitude {longitude:g}"

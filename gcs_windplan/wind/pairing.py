@@ -128,7 +128,9 @@ def nothing_found(catalogues: Sequence[Catalogue]) -> str:
     unused = "; ".join(text for catalogue in catalogues for text in catalogue.unused)
     for first, second in (*_PARTNERS, ("v", "u"), ("direction", "speed")):
         if have[first] and not have[second]:
-            return f"it has {first} ({named[first]}) but no {second}" + (f"; {unused}" if unused else "")
+            return f"it has {first} ({named[first]}) but no {second}: download it along" + (
+                f"; {unused}" if unused else ""
+            )
     if (have["u"] and have["v"]) or (have["speed"] and have["direction"]):
         us, vs = (
             sorted({str(s.level) for s in sheets if s.quantity in q}) for q in (("u", "speed"), ("v", "direction"))
@@ -158,7 +160,7 @@ def choose_times(times: Sequence[float], span: Span) -> tuple[tuple[float, ...],
     if outside > 0:
         raise WindError(
             f"the departure {say_time(start)} lies {outside / 3600:.1f} h outside of its times, {say_time(times[0])} to"
-            f" {say_time(times[-1])}"
+            f" {say_time(times[-1])}: choose another departure, or a file that reaches it"
         )
     first = max(time for time in times[:-1] if time <= start)  # two at least: one alone would be a steady wind
     after = [time for time in times if time >= start + span.lasting and time > first]

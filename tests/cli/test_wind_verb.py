@@ -82,7 +82,7 @@ def test_ten_numbers_at_nodes_are_those_of_other_readers(name: str) -> None:
     found = whole_winds(path, 5)
     if "ens_ztu" in name:
         assert not found
-        assert refused(path, "--at", "20,10").endswith("it has u (u) but no v")
+        assert refused(path, "--at", "20,10").endswith("it has u (u) but no v: download it along")
         return
     for first, second in found:
         u, v, speed, direction = row_of(told(path, *at(first)), first.level.replace(" above ground", " agl"))
@@ -116,7 +116,7 @@ def test_an_inventory_of_each_real_file(name: str) -> None:
     for fact in ("run", "times", "members", "grid", "also", "missing", "planning"):
         assert re.search(rf"^{fact}s? +\S", text, re.MULTILINE), fact
     assert re.search(r"^ (u|speed) ", text, re.MULTILINE)
-    picture = "no picture: it has u (u) but no v" if "ens_ztu" in name else "arrows point where it blows to"
+    picture = "no picture: it has u (u) but no v: download it along" if "ens_ztu" in name else "arrows point where it blows to"
     assert picture in " ".join(text.split())
     document = json.loads(told(path, "--json"))
     assert document["files"][0]["path"] == str(path)
@@ -302,7 +302,7 @@ def test_exit_code_of_an_inventory_of_half_a_wind(tmp_path: Path) -> None:
     write_trap(tmp_path / "a.nc", without=("v",))
     done = run("a.nc", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "stopped: it has u (u) but no v" in done.stdout
+    assert "stopped: it has u (u) but no v: download it along" in done.stdout
 
 
 def test_help_imports_nothing_heavy(tmp_path: Path) -> None:

@@ -168,7 +168,7 @@ def test_packed_values_are_unpacked(trap: Trap) -> None:
 def test_a_gap_inside_the_part_used_is_an_error_that_says_where(trap: Trap, how: str) -> None:
     path = trap(gap=how)
     message = _say(path, ground=_flat)
-    for part in ("missing at 1 of 50 nodes", "2026-05-01 12:00 UTC", "100 m above ground", "row 4, column 4"):
+    for part in ("missing at 1 of 50 nodes", "2026-05-01 12:00 UTC", "100 m above ground", "latitude 53, longitude 2"):
         assert part in message
     read(path, GREENWICH, _flat, area=(-60e3, -60e3, -50e3, -50e3))  # the gap lies outside
 

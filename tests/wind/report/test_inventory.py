@@ -68,7 +68,7 @@ EXPECTED: dict[str, tuple[Any, ...]] = {
     ),
     "ecmwf_ens_ztu_multi_dim.grib": (
         "GRIB edition 1", "European Centre for Medium-Range Weather Forecasts", 1, "m s**-1", (3, 5),
-        (-10, 50, -30, 50), "it has u (u) but no v",
+        (-10, 50, -30, 50), "it has u (u) but no v: download it along",
     ),
     "ecmwf_pl_regular_ll_10deg.grib": (
         "GRIB edition 1", "European Centre for Medium-Range Weather Forecasts", 4, "m s**-1", (19, 36),
@@ -121,7 +121,7 @@ def test_levels_of_u_without_v_are_lone() -> None:
 def test_u_without_v_is_listed_and_planning_says_why_it_stops(tmp_path: Path) -> None:
     found = _inventory(write_trap(tmp_path / "u.nc", without=("v",), hours=(0.0, 1.0)))
     assert [one.quantity for one in found.holdings] == ["u"]
-    assert found.trial.obstacle == "it has u (u) but no v"
+    assert found.trial.obstacle == "it has u (u) but no v: download it along"
     assert (len(found.times.times), found.whole) == (2, 0)
     assert found.lone == ()
 
