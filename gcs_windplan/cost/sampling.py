@@ -26,10 +26,10 @@ _MOST_PANELS: Final = 512  # of a leg, before any is halved
 _HALVINGS: Final = 10
 _MOST_ROUNDS: Final = 12  # of putting the clock in again: each gains a factor of 10 and more
 _SAME_TIME: Final = 1e-3  # [s]
-_SHORT: Final = 30.0  # [s] on legs so short the clock runs evenly
+_SHORT: Final = 0.03  # of the time between two of the wind's: on legs so short the clock runs evenly
 _HOURS: Final = 12  # parts of a longer leg on each of which it does
 _TURNS: Final = 6  # of finding out how, and a change that needs no further one
-_SAME_FACE: Final = 3e-4
+_SAME_FACE: Final = 1e-3
 _CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
 _SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
 
@@ -59,9 +59,9 @@ def integrate(
 ) -> LegIntegrals:
     """Integrate along straight legs (n, 3).
 
-    `when` (n, 2) is at what time each leg begins and ends [s since departure]; on a leg of more than half a minute the
-    clock runs in between as the wind lets the vehicle go. Without it the wind is taken as at the departure. A leg that
-    lasts beyond the last time of a changing wind cannot be flown.
+    `when` (n, 2) is at what time each leg begins and ends [s since departure]; on a leg that is long beside the wind's
+    changes the clock runs in between as the wind lets the vehicle go. Without it the wind is taken as at the departure.
+    A leg that lasts beyond the last time of a changing wind cannot be flown.
     """
     return integrate_each((wind,), vehicle, starts, ends, when)[0]
 
@@ -94,8 +94,11 @@ def integrate_each(
         return at_each(winds, points, known[leg, 0] + gone * (known[leg, 1] - known[leg, 0]))
 
     if known is not None and len(vectors):
+        short = _SHORT * min(
+            (float(np.diff(wind.times).min()) for wind in winds if len(wind.times) > 1), default=np.inf
+        )
         for _ in range(_TURNS):
-            before, face = face, _clock_faces(performance, vectors, known, wind_at)  # each by the one before
+            before, face = face, _clock_faces(performance, vectors, known, short, wind_at)  # each by the one before
             if face is None or (before is not None and np.abs(face - before).max() < _SAME_FACE):
                 break
 
@@ -118,13 +121,14 @@ def _clock_faces(
     performance: Performance,
     vectors: FloatArray,
     when: FloatArray,
+    short: float,
     wind_at: Callable[[IntArray, FloatArray], FloatArray],
 ) -> FloatArray | None:
     """The share of each leg's time that has gone at equal ways along it (n, 13); None where all legs are short.
 
-    On short legs, and where one cannot be flown, the clock runs evenly.
+    On legs that last less than `short` [s], and where one cannot be flown, the clock runs evenly.
     """
-    slow = np.flatnonzero(when[:, 1] - when[:, 0] > _SHORT)
+    slow = np.flatnonzero(when[:, 1] - when[:, 0] > short)
     if not len(slow):
         return None
     even = np.linspace(0.0, 1.0, _HOURS + 1)

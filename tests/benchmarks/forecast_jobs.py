@@ -81,7 +81,7 @@ def changing_plan(spacing: str) -> Measured:
 
     request = _across(FRONT)
     control = replace(
-        request, wind=request.members[0], members=(), robust=0.5, layers=(50.0, 80.0, 110.0),
+        request, airframe=None, wind=request.members[0], members=(), robust=0.5, layers=(50.0, 80.0, 110.0),
         graph=Uniform(float(spacing), 16),
     )  # fmt: skip
     gw.plan_route(replace(control, graph=Uniform(400.0, 16)))

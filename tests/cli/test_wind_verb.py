@@ -116,7 +116,8 @@ def test_an_inventory_of_each_real_file(name: str) -> None:
     for fact in ("run", "times", "members", "grid", "also", "missing", "planning"):
         assert re.search(rf"^{fact}s? +\S", text, re.MULTILINE), fact
     assert re.search(r"^ (u|speed) ", text, re.MULTILINE)
-    picture = "no picture: it has u (u) but no v: download it along" if "ens_ztu" in name else "arrows point where it blows to"
+    stopped = "no picture: it has u (u) but no v: download it along"
+    picture = stopped if "ens_ztu" in name else "arrows point where it blows to"
     assert picture in " ".join(text.split())
     document = json.loads(told(path, "--json"))
     assert document["files"][0]["path"] == str(path)
