@@ -10,6 +10,8 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
+from gcs_windplan.flight import clock
+
 #: How long the quickest route takes that begins at a time [s]; infinite where there is none.
 Lasting: TypeAlias = Callable[[float], float]
 
@@ -27,8 +29,8 @@ def where_it_pays(now: float, begin: float, lasting: Lasting) -> tuple[str, ...]
     if now - arrivals[least] < _WORTH * now:
         return ()
     return (
-        f"waiting pays: leaving {waits[least] / 60:.0f} min later arrives {(now - arrivals[least]) / 60:.0f} min"
-        " earlier, since the wind closes the best way until then.",
+        f"waiting pays: leaving {clock(waits[least])} min later arrives {clock(now - arrivals[least])} min earlier, since"
+        " the wind closes the best way until then.",
     )
 
 

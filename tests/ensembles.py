@@ -57,8 +57,9 @@ class Gate:
     def at(self, points, seconds=0.0):
         when = np.broadcast_to(np.asarray(seconds, dtype=float), len(points))
         strength = np.interp(when, self.times, [self.strength, self.strength, 0.0, 0.0])
-        beyond = np.abs(points[:, 0]) < 150.0  # a wall of wind in the middle, from south to north
-        return np.column_stack([-strength * beyond * (np.abs(points[:, 1]) < 900.0), *np.zeros((2, len(points)))])
+        wall = np.clip((250.0 - np.abs(points[:, 0])) / 100.0, 0.0, 1.0)  # in the middle, from south to north
+        wall *= np.clip((1000.0 - np.abs(points[:, 1])) / 100.0, 0.0, 1.0)
+        return np.column_stack([-strength * wall, *np.zeros((2, len(points)))])
 
 
 def request(**changes) -> Request:
