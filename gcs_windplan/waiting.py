@@ -29,8 +29,8 @@ def where_it_pays(now: float, begin: float, lasting: Lasting) -> tuple[str, ...]
     if now - arrivals[least] < _WORTH * now:
         return ()
     return (
-        f"waiting pays: leaving {clock(waits[least])} min later arrives {clock(now - arrivals[least])} min earlier, since"
-        " the wind closes the best way until then.",
+        f"waiting pays: leaving {clock(waits[least])} min later arrives {clock(now - arrivals[least])} min earlier,"
+        " since the wind closes the best way until then.",
     )
 
 
