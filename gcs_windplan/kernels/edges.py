@@ -253,7 +253,7 @@ def travel(
     return cost, seconds
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@numba.njit(error_model="numpy")
 def travel_between(
     performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
