@@ -11,26 +11,42 @@ measure shaping compares; it is not the number that A* adds up.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.cost.sampling import LegIntegrals, clocked, integrate_each, performance_of, still_air_times
+from gcs_windplan.cost.bounds import least_prices
+from gcs_windplan.cost.sampling import (
+    LegIntegrals,
+    clocked,
+    integrate_each,
+    performance_of,
+    sample_legs,
+    still_air_times,
+)
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.kernels import edges as kernel
+from gcs_windplan.kernels.power import PowerGrid, integrate_prices
 from gcs_windplan.kernels.triangle import Performance, mean_angles
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
-CostName: TypeAlias = Literal["distance", "angle", "hybrid", "time"]
-COST_NAMES: tuple[CostName, ...] = ("distance", "angle", "hybrid", "time")
+CostName: TypeAlias = Literal["distance", "angle", "hybrid", "time", "energy"]
+COST_NAMES: tuple[CostName, ...] = ("distance", "angle", "hybrid", "time", "energy")
 
 _ESTIMATE_SAMPLES = 16
 _ESTIMATE_BATCH = 50_000  # nodes at a time, so that memory stays bounded
 
-_CODES = {"distance": kernel.DISTANCE, "angle": kernel.ANGLE, "hybrid": kernel.HYBRID, "time": kernel.TIME}
+_CODES = {
+    "distance": kernel.DISTANCE,
+    "angle": kernel.ANGLE,
+    "hybrid": kernel.HYBRID,
+    "time": kernel.TIME,
+    "energy": kernel.ENERGY,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +77,9 @@ class LegCost:
     `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m];
     `begin` is when the start is left [s since departure]. With `members` of an ensemble a leg costs what it costs in
     the member at the `quantile` from the cheapest up; `wind` is then their mean. Along a leg
-    the wind is looked at `finer` times as closely as its resolution asks for.
+    the wind is looked at `finer` times as closely as its resolution asks for. With a `power` a leg costs its energy and
+    what its time is worth [J], at the best of the airspeeds there; `energy` needs it, and `time` may have it: then
+    least time is weighed against energy.
     """
 
     choice: CostChoice
@@ -73,6 +91,11 @@ class LegCost:
     members: tuple[WindField, ...] = ()
     quantile: float = 0.5
     finer: float = 1.0
+    power: PowerGrid | None = None
+
+    def __post_init__(self) -> None:
+        if self.choice.name == "energy" and self.power is None:
+            raise InputError(Problem("energy asks for the vehicle's power: name its `airframe`", "cost"))
 
     def of_legs(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None) -> FloatArray:
         """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown.
@@ -99,6 +122,11 @@ class LegCost:
         return len(self.wind.times) > 1
 
     @property
+    def least_time(self) -> bool:
+        """Whether it is the time alone."""
+        return self.choice.name == "time" and self.power is None
+
+    @property
     def rank(self) -> int:
         """How many members undercut the one that counts."""
         return rank_of(self.quantile, len(self.members)) if self.members else 0
@@ -110,6 +138,8 @@ class LegCost:
     def _measured(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Cost and seconds of legs, (n,) each."""
         winds = self.members or (self.wind,)
+        if self.power is not None:
+            return self._priced_by_power(self.power, winds, starts, ends, when)
         parts = integrate_each(winds, self.vehicle, starts, ends, when, self.finer)
         each = [self._price(part, starts, ends) for part in parts]
         if len(each) == 1:
@@ -117,6 +147,31 @@ class LegCost:
         costs, seconds = np.stack(each), np.stack([part.seconds for part in parts])
         chosen = np.argsort(costs, axis=0, kind="stable")[self.rank : self.rank + 1]
         return np.take_along_axis(costs, chosen, 0)[0], np.take_along_axis(seconds, chosen, 0)[0]
+
+    def _priced_by_power(
+        self,
+        power: PowerGrid,
+        winds: Sequence[WindField],
+        starts: FloatArray,
+        ends: FloatArray,
+        when: FloatArray | None,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Price [J] and seconds of legs, (n,) each, at the airspeed that makes each cheapest."""
+        legs = sample_legs(winds, self.vehicle, starts, ends, when, self.finer)
+        speeds = np.tile(power.airspeeds, (len(starts), 1))
+        heights = np.ascontiguousarray(starts[:, 2])
+        tables = [
+            integrate_prices(
+                legs.performance, power, speeds, legs.vectors, heights, legs.first, legs.weights, legs.shares, blows
+            )
+            for blows in legs.winds
+        ]
+        seconds = np.stack([legs.in_time(table[..., 1]) for table in tables])
+        prices = np.where(np.isfinite(seconds), np.stack([table[..., 0] for table in tables]), np.inf)
+        member = np.argsort(prices, axis=0, kind="stable")[self.rank]
+        prices, seconds = (np.take_along_axis(table, member[None], 0)[0] for table in (prices, seconds))
+        best = np.argmin(prices, axis=1)[:, None]
+        return np.take_along_axis(prices, best, 1)[:, 0], np.take_along_axis(seconds, best, 1)[:, 0]
 
     def _price(self, parts: LegIntegrals, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """What the chosen cost makes of legs (n,)."""
@@ -144,7 +199,7 @@ class LegCost:
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
         return kernel.Setting(
-            code=_CODES[self.choice.name],
+            code=kernel.ENERGY if self.power is not None else _CODES[self.choice.name],
             goal_e=float(goal[0]),
             goal_n=float(goal[1]),
             goal_z=float(goal[2]),
@@ -158,12 +213,15 @@ class LegCost:
             ball_down=float(np.fmax.reduce(-winds[:, 2], initial=0.0)),
         )
 
-    def estimates(self, points: FloatArray, goal: FloatArray) -> FloatArray:
+    def estimates(self, points: FloatArray, start: FloatArray, goal: FloatArray, setting: kernel.Setting) -> FloatArray:
         """The estimates from nodes (n, 3) to the goal (3,) where the kernels have none of their own, else empty.
 
-        Only `angle` needs it: (10) takes the mean angle between the wind and the straight line to the goal, here at 16
+        Prices of energy have lower bounds (`bounds`), best along the way from the start (3,). `angle` needs its
+        estimates here as well: (10) takes the mean angle between the wind and the straight line to the goal, here at 16
         places of that line. It overestimates routes of a single short edge, so A* with it is not optimal.
         """
+        if self.power is not None:
+            return least_prices(points, setting, self.power, start)
         if self.choice.name != "angle":
             return np.empty(0)
         estimates = np.zeros(len(points))

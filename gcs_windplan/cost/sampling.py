@@ -32,6 +32,7 @@ _TURNS: Final = 6  # of finding out how, and a change that needs no further one
 _SAME_FACE: Final = 1e-3
 _CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
 _SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
+_PLACES: Final = np.array([0.0, 0.5, 1.0])  # of its samples in a panel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,15 +56,20 @@ def performance_of(vehicle: Vehicle) -> Performance:
 
 
 def integrate(
-    wind: WindField, vehicle: Vehicle, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None
+    wind: WindField,
+    vehicle: Vehicle,
+    starts: FloatArray,
+    ends: FloatArray,
+    when: FloatArray | None = None,
+    airspeeds: FloatArray | None = None,
 ) -> LegIntegrals:
-    """Integrate along straight legs (n, 3).
+    """Integrate along straight legs (n, 3), each flown at the vehicle's airspeed or at its own of `airspeeds` (n,).
 
     `when` (n, 2) is at what time each leg begins and ends [s since departure]; on a leg that is long beside the wind's
     changes the clock runs in between as the wind lets the vehicle go. Without it the wind is taken as at the departure.
     A leg that lasts beyond the last time of a changing wind cannot be flown.
     """
-    return integrate_each((wind,), vehicle, starts, ends, when)[0]
+    return integrate_each((wind,), vehicle, starts, ends, when, airspeeds=airspeeds)[0]
 
 
 def integrate_each(
@@ -73,14 +79,58 @@ def integrate_each(
     ends: FloatArray,
     when: FloatArray | None = None,
     finer: float = 1.0,
+    airspeeds: FloatArray | None = None,
 ) -> list[LegIntegrals]:
     """The same in each of several winds, the members of an ensemble, with samples `finer` times as close."""
+    legs = sample_legs(winds, vehicle, starts, ends, when, finer)
+    speeds = np.full(len(starts), float(vehicle.airspeed)) if airspeeds is None else airspeeds
+    tables = [
+        integrate_legs(legs.performance, speeds, legs.vectors, legs.first, legs.weights, blows) for blows in legs.winds
+    ]
+    return [LegIntegrals(legs.in_time(table[:, 0]), table[:, 1], table[:, 2], table[:, 3]) for table in tables]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampledLegs:
+    """The wind along n legs, in one or several members.
+
+    `vectors` (n, 3) [m]; leg i owns the samples first[i] .. first[i + 1] - 1, which lie at `shares` of it, with
+    `weights` that sum to 1 and `winds` (k, 3) in each member. `begins` (n,) is when the legs begin and `last` when the
+    forecast ends [s since departure].
+    """
+
+    performance: Performance
+    vectors: FloatArray
+    first: IntArray
+    weights: FloatArray
+    shares: FloatArray
+    winds: list[FloatArray]
+    begins: FloatArray | None
+    last: float
+
+    def in_time(self, seconds: FloatArray) -> FloatArray:
+        """The legs' seconds (n,) or (n, k), infinite where a leg lasts beyond the forecast."""
+        if self.begins is None:
+            return seconds
+        begins = self.begins if seconds.ndim == 1 else self.begins[:, None]
+        return np.where(begins + seconds <= self.last, seconds, np.inf)
+
+
+def sample_legs(
+    winds: Sequence[WindField],
+    vehicle: Vehicle,
+    starts: FloatArray,
+    ends: FloatArray,
+    when: FloatArray | None = None,
+    finer: float = 1.0,
+) -> SampledLegs:
+    """The winds along straight legs (n, 3), looked at `finer` times as closely as their resolution asks for."""
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     apart = 2 * min(wind.resolution for wind in winds) / finer
     panels = np.clip(np.ceil(lengths / apart), 1, _MOST_PANELS).astype(np.int64)  # two samples each
     last = min((float(wind.times[-1]) for wind in winds if len(wind.times) > 1), default=np.inf)
-    known = np.minimum(when, last) if when is not None else None  # what lasts longer is refused below
+    known = np.minimum(when, last) if when is not None else None  # what lasts longer is refused later
     performance = performance_of(vehicle)
     face: FloatArray | None = (
         None  # of the legs' clocks: the share of a leg's time that has gone at equal ways along it
@@ -102,19 +152,22 @@ def integrate_each(
             if face is None or (before is not None and np.abs(face - before).max() < _SAME_FACE):
                 break
 
-    leg, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
+    leg, begins, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
     first = np.zeros(len(vectors) + 1, dtype=np.int64)
     np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
-    weights = (widths[:, None] * _SIMPSON).ravel()
-    results = []
-    for member in range(len(winds)):
-        blows = np.ascontiguousarray(sampled[:, :, 3 * member : 3 * member + 3]).reshape(-1, 3)
-        table = integrate_legs(performance, vectors, first, weights, blows)
-        seconds = table[:, 0]
-        if when is not None:
-            seconds = np.where(when[:, 0] + seconds <= last, seconds, np.inf)
-        results.append(LegIntegrals(seconds, table[:, 1], table[:, 2], table[:, 3]))
-    return results
+    blows = [
+        np.ascontiguousarray(sampled[:, :, 3 * member : 3 * member + 3]).reshape(-1, 3) for member in range(len(winds))
+    ]
+    return SampledLegs(
+        performance,
+        vectors,
+        first,
+        (widths[:, None] * _SIMPSON).ravel(),
+        (begins[:, None] + widths[:, None] * _PLACES).ravel(),
+        blows,
+        None if when is None else when[:, 0],
+        last,
+    )
 
 
 def _clock_faces(
@@ -138,7 +191,9 @@ def _clock_faces(
     blows = wind_at(leg, middles)
     blows = np.ascontiguousarray(blows.reshape(len(leg), -1, 3).mean(axis=1))  # of members their mean
     alone = np.arange(len(leg) + 1, dtype=np.int64)
-    paces = integrate_legs(performance, vectors[leg], alone, np.ones(len(leg)), blows)[:, 0].reshape(-1, _HOURS)
+    airspeeds = np.full(len(leg), performance.airspeed)
+    paces = integrate_legs(performance, airspeeds, vectors[leg], alone, np.ones(len(leg)), blows)[:, 0]
+    paces = paces.reshape(-1, _HOURS)
     known = np.isfinite(paces).all(axis=1) & (paces.sum(axis=1) > 0)
     gone = np.cumsum(paces[known], axis=1)
     face[slow[known], 1:] = gone / gone[:, -1:]
@@ -203,14 +258,14 @@ def _halved(
     winds: FloatArray,
     wind_at: Callable[[IntArray, FloatArray], FloatArray],
     calm: float,
-) -> tuple[IntArray, FloatArray, FloatArray]:
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
     """The panels with those halved in which the wind changes by more than `calm` [m/s]; sorted by leg."""
-    done: list[tuple[IntArray, FloatArray, FloatArray]] = []
+    done: list[tuple[IntArray, FloatArray, FloatArray, FloatArray]] = []
     for _ in range(_HALVINGS):
         rough = np.abs(np.diff(winds, axis=1)).max(axis=(1, 2)) > calm
         if not rough.any():
             break
-        done.append((leg[~rough], widths[~rough], winds[~rough]))
+        done.append((leg[~rough], begins[~rough], widths[~rough], winds[~rough]))
         leg, begins, widths, winds = leg[rough], begins[rough], widths[rough], winds[rough]
         quarters = wind_at(np.tile(leg, 2), np.concatenate([begins + 0.25 * widths, begins + 0.75 * widths]))
         before, after = quarters[: len(leg)], quarters[len(leg) :]
@@ -222,7 +277,7 @@ def _halved(
         )
         begins = np.concatenate([begins, begins + 0.5 * widths])
         leg, widths = np.tile(leg, 2), np.tile(0.5 * widths, 2)
-    done.append((leg, widths, winds))
-    leg, widths, winds = (np.concatenate(parts) for parts in zip(*done, strict=True))
+    done.append((leg, begins, widths, winds))
+    leg, begins, widths, winds = (np.concatenate(parts) for parts in zip(*done, strict=True))
     order = np.argsort(leg, kind="stable")
-    return leg[order], widths[order], np.ascontiguousarray(winds[order])
+    return leg[order], begins[order], widths[order], np.ascontiguousarray(winds[order])

@@ -8,6 +8,7 @@ carries the time of arrival; least time is optimal there too, as long as who lea
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numba
 import numpy as np
@@ -72,7 +73,7 @@ def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, I
 def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
-    performance: Performance, setting: Setting,
+    performance: Performance, setting: Setting, grid: Any,
     seeds: IntArray, seed_costs: FloatArray, seed_keys: FloatArray, seed_clocks: FloatArray,
     targets: IntArray, goal_winds: FloatArray,
     times: FloatArray | None, rank: int, each: FloatArray | None, tally: IntArray,
@@ -81,7 +82,7 @@ def search_grid(
 
     `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers,
     rows, columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step
-    k < m is an edge; `winds`, `times`, `rank`, `each` and `tally` as in `edges`; `estimates` (nodes,) in place of
+    k < m is an edge; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`; `estimates` (nodes,) in place of
     `remaining`, or empty. The search begins at `seeds` with their costs, keys (cost and estimate) and clocks [s], and
     ends with the cheapest of `targets` plus the edge from there to the goal, whose winds are shaped as a single node's.
 
@@ -134,9 +135,9 @@ def search_grid(
         layer, row, column = node // (rows * columns), (node // columns) % rows, node % columns
         if closed[node] & 2:
             cost, _ = travel_between(
-                performance, setting, times, tally, rank, each, winds, node, goal_winds, 0,
+                performance, setting, grid, times, tally, rank, each, winds, node, goal_winds, 0,
                 setting.goal_e - (corner[0] + column * spacing), setting.goal_n - (corner[1] + row * spacing),
-                setting.goal_z - heights[node], clock,
+                setting.goal_z - heights[node], heights[node], clock,
             )  # fmt: skip
             if reached[node] + cost < best:
                 best = reached[node] + cost
@@ -159,8 +160,8 @@ def search_grid(
             if mask & 1 == 0:
                 continue
             cost, seconds = travel(
-                performance, setting, times, tally, rank, each, winds, node, winds, to,
-                tracks[k, 0], tracks[k, 1], tracks[k, 2], heights[to] - heights[node], clock,
+                performance, setting, grid, times, tally, rank, each, winds, node, winds, to,
+                tracks[k, 0], tracks[k, 1], tracks[k, 2], heights[to] - heights[node], heights[node], clock,
             )  # fmt: skip
             cost += reached[node]
             if cost < reached[to]:
@@ -199,12 +200,12 @@ def search_grid(
 @numba.njit(cache=True, error_model="numpy")
 def search_csr(
     first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
-    performance: Performance, setting: Setting, start: int, goal: int,
+    performance: Performance, setting: Setting, grid: Any, start: int, goal: int,
     times: FloatArray | None, begin: float, rank: int, each: FloatArray | None, tally: IntArray,
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
 
-    `points` (nodes, 3) [m]; `winds`, `times`, `rank`, `each` and `tally` as in `edges`, `begin` the clock at the start
+    `points` (nodes, 3) [m]; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`, `begin` the clock at the start
     [s]; `estimates` (nodes,) in place of `remaining`, or empty. Returns as `search_grid` does.
     """
     n = points.shape[0]
@@ -239,9 +240,9 @@ def search_csr(
             if closed[to]:
                 continue
             cost, seconds = travel_between(
-                performance, setting, times, tally, rank, each, winds, node, winds, to,
+                performance, setting, grid, times, tally, rank, each, winds, node, winds, to,
                 points[to, 0] - points[node, 0], points[to, 1] - points[node, 1], points[to, 2] - points[node, 2],
-                clock,
+                points[node, 2], clock,
             )  # fmt: skip
             cost += reached[node]
             if cost < reached[to]:

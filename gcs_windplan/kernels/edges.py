@@ -8,8 +8,10 @@ A search tells by what it hands over which world it is:
     winds (nodes, 3), times None                     steady
     winds (times, nodes, 3), each None               changing: linear in time between `times`
     winds (members, times, nodes, 3), each given     several members: the cost is a quantile over them
+    grid None                                        the cost does not ask for power, and the airspeed is the vehicle's
+    grid given                                       it is a price of energy, at the best of several airspeeds
 
-Numba compiles only the branch that the winds' dimensions ask for.
+Numba compiles only the branches that the winds' dimensions and the grid ask for.
 """
 
 from __future__ import annotations
@@ -21,20 +23,21 @@ import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.kernels.triangle import PAPER, Performance, leg_seconds, wind_angle
+from gcs_windplan.kernels.power import leg_price
+from gcs_windplan.kernels.triangle import PAPER, Performance, flown_at, leg_seconds, wind_angle
 
 _ROUNDS = (
     20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
 )
 _SAME = 1e-6  # [s]
 
-DISTANCE, ANGLE, HYBRID, TIME = 0.0, 1.0, 2.0, 3.0
+DISTANCE, ANGLE, HYBRID, TIME, ENERGY = 0.0, 1.0, 2.0, 3.0, 4.0
 
 
 class Setting(NamedTuple):
     """What a search minimises, and where to."""
 
-    code: float  # one of the four above
+    code: float  # one of the five above
     goal_e: float  # [m], as are the next two
     goal_n: float
     goal_z: float
@@ -69,28 +72,35 @@ def cost_of(
 
 @numba.njit(error_model="numpy", forceinline=True)
 def edge_cost(
-    performance: Performance, setting: Setting,
-    level: float, east: float, north: float, climb: float,
+    performance: Performance, setting: Setting, grid: Any,
+    level: float, east: float, north: float, climb: float, height: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
 ) -> float:  # fmt: skip
     """The cost of an edge in the search; infinite where it cannot be flown.
 
-    The edge goes `level` [m] along the unit track (east, north) and gains `climb` [m] in a wind from a to b [m/s]. Its
-    time is the mean of the times in both winds (the trapezoidal rule).
+    The edge goes `level` [m] along the unit track (east, north) from a `height` and gains `climb` [m] in a wind from a
+    to b [m/s]. Its time is the mean of the times in both winds (the trapezoidal rule), and so is its price in energy.
     """
     outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
     if outset == math.inf:
         return outset
-    seconds: float = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
+    arriving: float = leg_seconds(performance, level, east, north, climb, be, bn, bu)
+    if grid is not None:
+        price: float = 0.5 * (
+            leg_price(grid, outset, level, east, north, climb, height, ae, an, au)
+            + leg_price(grid, arriving, level, east, north, climb, height + climb, be, bn, bu)
+        )
+        return price
+    seconds: float = 0.5 * (outset + arriving)
     cost: float = cost_of(setting, seconds, level, east, north, climb, be, bn, bu)
     return cost
 
 
 @numba.njit(cache=True, error_model="numpy")
 def edge_between(
-    performance: Performance, setting: Setting,
-    de: float, dn: float, dz: float,
+    performance: Performance, setting: Setting, grid: Any,
+    de: float, dn: float, dz: float, height: float,
     ae: float, an: float, au: float,
     be: float, bn: float, bu: float,
 ) -> float:  # fmt: skip
@@ -99,8 +109,8 @@ def edge_between(
     if level == 0.0:
         if dz == 0.0:
             return 0.0
-        return edge_cost(performance, setting, 0.0, 0.0, 0.0, dz, ae, an, au, be, bn, bu)
-    return edge_cost(performance, setting, level, de / level, dn / level, dz, ae, an, au, be, bn, bu)
+        return edge_cost(performance, setting, grid, 0.0, 0.0, 0.0, dz, height, ae, an, au, be, bn, bu)
+    return edge_cost(performance, setting, grid, level, de / level, dn / level, dz, height, ae, an, au, be, bn, bu)
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
@@ -164,9 +174,9 @@ def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
 
 @numba.njit(error_model="numpy")
 def edge_in_time(
-    performance: Performance, setting: Setting, times: FloatArray, tally: IntArray,
+    performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray,
     from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
-    level: float, east: float, north: float, climb: float, clock: float,
+    level: float, east: float, north: float, climb: float, height: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Cost and seconds of an edge that begins at `clock` [s] in winds (times, nodes, 3), linear between `times`.
 
@@ -195,6 +205,13 @@ def edge_in_time(
         if abs(seconds - before) < _SAME:
             break
     if seconds < math.inf:
+        if grid is not None:
+            arriving = 2.0 * seconds - outset  # what it takes in the wind at its end
+            price: float = 0.5 * (
+                leg_price(grid, outset, level, east, north, climb, height, ae, an, au)
+                + leg_price(grid, arriving, level, east, north, climb, height + climb, be, bn, bu)
+            )
+            return price, seconds
         return cost_of(setting, seconds, level, east, north, climb, be, bn, bu), seconds
     for later in range(k1, times.size):
         we, wn, wu = from_winds[later, node, 0], from_winds[later, node, 1], from_winds[later, node, 2]
@@ -206,9 +223,9 @@ def edge_in_time(
 
 @numba.njit(error_model="numpy")
 def edge_of_members(
-    performance: Performance, setting: Setting, times: FloatArray, tally: IntArray, rank: int, each: FloatArray,
-    from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
-    level: float, east: float, north: float, climb: float, clock: float,
+    performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray, rank: int,
+    each: FloatArray, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    level: float, east: float, north: float, climb: float, height: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Cost and seconds of an edge in the member that `rank` others undercut, those that cannot fly it last.
 
@@ -216,8 +233,8 @@ def edge_of_members(
     """
     for member in range(each.shape[1]):
         cost, seconds = edge_in_time(
-            performance, setting, times, tally, from_winds[member], node, to_winds[member], to,
-            level, east, north, climb, clock,
+            performance, setting, grid, times, tally, from_winds[member], node, to_winds[member], to,
+            level, east, north, climb, height, clock,
         )  # fmt: skip
         place = member
         while place > 0 and each[0, place - 1] > cost:  # few members: insertion sort
@@ -228,36 +245,64 @@ def edge_of_members(
 
 
 @numba.njit(error_model="numpy", forceinline=True)
-def travel(
-    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+def _travel_at(
+    performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
-    level: float, east: float, north: float, climb: float, clock: float,
+    level: float, east: float, north: float, climb: float, height: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Cost and seconds of an edge between two nodes in whichever world; no seconds are told in a steady one."""
+    """`travel` at the airspeed of the performance."""
     if from_winds.ndim == 2:
         steady: float = edge_cost(
-            performance, setting, level, east, north, climb,
+            performance, setting, grid, level, east, north, climb, height,
             from_winds[node, 0], from_winds[node, 1], from_winds[node, 2],
             to_winds[to, 0], to_winds[to, 1], to_winds[to, 2],
         )  # fmt: skip
         return steady, 0.0
     if from_winds.ndim == 3:
         cost, seconds = edge_in_time(
-            performance, setting, times, tally, from_winds, node, to_winds, to, level, east, north, climb, clock
-        )
+            performance, setting, grid, times, tally, from_winds, node, to_winds, to,
+            level, east, north, climb, height, clock,
+        )  # fmt: skip
         return cost, seconds
     cost, seconds = edge_of_members(
-        performance, setting, times, tally, rank, each, from_winds, node, to_winds, to,
-        level, east, north, climb, clock,
+        performance, setting, grid, times, tally, rank, each, from_winds, node, to_winds, to,
+        level, east, north, climb, height, clock,
     )  # fmt: skip
     return cost, seconds
 
 
+@numba.njit(error_model="numpy", forceinline=True)
+def travel(
+    performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
+    each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
+    level: float, east: float, north: float, climb: float, height: float, clock: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Cost and seconds of an edge between two nodes in whichever world; no seconds are told in a steady one.
+
+    The edge begins at a `height` above mean sea level [m].
+    """
+    if grid is None:
+        cost, seconds = _travel_at(
+            performance, setting, grid, times, tally, rank, each, from_winds, node, to_winds, to,
+            level, east, north, climb, height, clock,
+        )  # fmt: skip
+        return cost, seconds
+    best, best_seconds = math.inf, math.inf
+    for k in range(grid.airspeeds.size):
+        cost, seconds = _travel_at(
+            flown_at(performance, grid.airspeeds[k]), setting, grid, times, tally, rank, each, from_winds, node,
+            to_winds, to, level, east, north, climb, height, clock,
+        )  # fmt: skip
+        if cost < best:
+            best, best_seconds = cost, seconds
+    return best, best_seconds
+
+
 @numba.njit(error_model="numpy")
 def travel_between(
-    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+    performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
-    de: float, dn: float, dz: float, clock: float,
+    de: float, dn: float, dz: float, height: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
     """`travel` along an edge given by its vector (de, dn, dz) [m]."""
     level = math.sqrt(de * de + dn * dn)
@@ -265,22 +310,23 @@ def travel_between(
         return 0.0, 0.0
     east, north = (de / level, dn / level) if level > 0.0 else (0.0, 0.0)
     cost, seconds = travel(
-        performance, setting, times, tally, rank, each, from_winds, node, to_winds, to, level, east, north, dz, clock
-    )
+        performance, setting, grid, times, tally, rank, each, from_winds, node, to_winds, to,
+        level, east, north, dz, height, clock,
+    )  # fmt: skip
     return cost, seconds
 
 
 @numba.njit(cache=True, error_model="numpy")
 def joins(
-    performance: Performance, setting: Setting, times: Any, tally: IntArray, rank: int,
+    performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,
-    clock: float,
+    height: float, clock: float,
 ) -> FloatArray:  # fmt: skip
-    """Cost and seconds (n, 2) of the edges from a site to some nodes, along vectors (n, 3) [m]."""
+    """Cost and seconds (n, 2) of the edges from a site at a height [m] to some nodes, along vectors (n, 3) [m]."""
     result = np.empty((nodes.size, 2))
     for i in range(nodes.size):
         result[i, 0], result[i, 1] = travel_between(
-            performance, setting, times, tally, rank, each, site_winds, 0, winds, nodes[i],
-            vectors[i, 0], vectors[i, 1], vectors[i, 2], clock,
+            performance, setting, grid, times, tally, rank, each, site_winds, 0, winds, nodes[i],
+            vectors[i, 0], vectors[i, 1], vectors[i, 2], height, clock,
         )  # fmt: skip
     return result

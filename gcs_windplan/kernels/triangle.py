@@ -27,6 +27,12 @@ class Performance(NamedTuple):
 
 
 @numba.njit(error_model="numpy", forceinline=True)
+def flown_at(performance: Performance, airspeed: float) -> Performance:
+    """The same vehicle at another airspeed."""
+    return Performance(performance.model, airspeed, performance.climb, performance.descent, performance.hovers)
+
+
+@numba.njit(error_model="numpy", forceinline=True)
 def ground_speed(model: float, airspeed: float, along: float, cross: float) -> float:
     """Speed along the track [m/s] with the wind's components along and across it; 0 where it cannot be flown.
 
@@ -100,11 +106,12 @@ def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: floa
 
 @numba.njit(cache=True, error_model="numpy")
 def integrate_legs(
-    performance: Performance, vectors: FloatArray, first: IntArray, weights: FloatArray, winds: FloatArray
-) -> FloatArray:
+    performance: Performance, airspeeds: FloatArray,
+    vectors: FloatArray, first: IntArray, weights: FloatArray, winds: FloatArray,
+) -> FloatArray:  # fmt: skip
     """Integrals along n legs, shape (n, 4): time [s], ∫angle ds [rad m], mean wind along and across [m/s].
 
-    `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] .. first[i + 1] - 1, whose `weights` sum
+    `airspeeds` (n,) [m/s] of the legs, `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] .. first[i + 1] - 1, whose `weights` sum
     to 1 and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of no length takes no time. Across is
     positive from left to right. Time is infinite where the wind is too strong, or not known (NaN).
     """
@@ -118,9 +125,10 @@ def integrate_legs(
         north = dn / level if level > 0.0 else 0.0
         if length == 0.0:
             continue
+        flown = flown_at(performance, airspeeds[i])
         for k in range(first[i], first[i + 1]):
             we, wn, wu, share = winds[k, 0], winds[k, 1], winds[k, 2], weights[k]
-            result[i, 0] += share * leg_seconds(performance, level, east, north, du, we, wn, wu)
+            result[i, 0] += share * leg_seconds(flown, level, east, north, du, we, wn, wu)
             result[i, 1] += share * length * wind_angle(de, dn, du, we, wn, wu)
             result[i, 2] += share * (we * east + wn * north)
             result[i, 3] += share * (we * north - wn * east)

@@ -24,7 +24,7 @@ _CUT_BY_WIND = "wind (too strong for the vehicle, or not known that high)"
 _ADVICE = {
     BREACHES[TOO_LOW]: "Lower the clearance, add higher layers or a finer graph, or widen graph.margin.",
     BREACHES[UNKNOWN_GROUND]: "Add terrain around the sites, or move them.",
-    BREACHES[TOO_HIGH]: "Raise max_height, lower the clearance, refine the graph, or widen graph.margin.",
+    BREACHES[TOO_HIGH]: "Raise limits.max_height, lower the clearance, refine the graph, or widen graph.margin.",
     BREACHES[OBSTACLE]: "Move the site, lower the obstacle's margin, refine the graph or widen graph.margin.",
     BREACHES[OUTSIDE]: "Widen graph.margin.",
     BREACHES[AIRSPACE]: "Move the site, correct the areas, or widen graph.margin.",
@@ -57,7 +57,7 @@ def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArr
     while True:
         windy.cover(clock, clock + horizon)
         found = find(windy, cost, start, goal, clock)
-        complete = len(found.points) > 0 and (cost.choice.name == "time" or found.outlasted == 0)
+        complete = len(found.points) > 0 and (cost.least_time or found.outlasted == 0)
         reaches = windy.times is None or clock + horizon >= windy.ends
         if complete or reaches or found.outlasted == 0:
             break
@@ -89,11 +89,14 @@ def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: Float
     site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
     setting = cost.setting(goal, np.concatenate([windy.winds, air], axis=-2))
     world = windy.times, cost.rank, cost.scratch(), np.zeros(2, dtype=np.int64)
-    performance, estimates = cost.performance(), cost.estimates(windy.points, goal)
+    performance, estimates = cost.performance(), cost.estimates(windy.points, start, goal, setting)
 
     def leave(nodes: IntArray, winds: FloatArray, vectors: FloatArray) -> FloatArray:
         times, rank, each, tally = world
-        return joins(performance, setting, times, tally, rank, each, site_winds, winds, nodes, vectors, clock)
+        return joins(
+            performance, setting, cost.power, times, tally, rank, each, site_winds, winds, nodes, vectors,
+            float(start[2]), clock,
+        )  # fmt: skip
 
     near = _clear_nodes(windy, start)
     costs = leave(near, windy.winds, windy.points[near] - start)
@@ -105,7 +108,7 @@ def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: Float
         ahead = np.array([remaining(performance, setting, *windy.points[seed]) for seed in seeds], dtype=np.float64)
     nodes, total, expanded, reached = search_grid(
         np.array(veil.heights.shape, dtype=np.int64), veil.corner, veil.spacing, veil.steps,
-        veil.heights.ravel(), veil.legal, windy.winds, estimates, performance, setting,
+        veil.heights.ravel(), veil.legal, windy.winds, estimates, performance, setting, cost.power,
         seeds, costs[:, 0], costs[:, 0] + ahead, clock + costs[:, 1], _clear_nodes(windy, goal), goal_winds, *world,
     )  # fmt: skip
     direct = math.inf
@@ -135,9 +138,10 @@ def _search_prm(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatA
     assert isinstance(veil, PrmVeil)
     ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
     tally = np.zeros(2, dtype=np.int64)
+    setting = cost.setting(goal, windy.winds)
     nodes, total, expanded, reached = search_csr(
-        veil.first, veil.neighbours, veil.points, windy.winds, cost.estimates(veil.points, goal),
-        cost.performance(), cost.setting(goal, windy.winds), ends[0], ends[1],
+        veil.first, veil.neighbours, veil.points, windy.winds, cost.estimates(veil.points, start, goal, setting),
+        cost.performance(), setting, cost.power, ends[0], ends[1],
         windy.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
     return _Found(veil.points[nodes], total, expanded, reached, int(tally[0]), int(tally[1]))

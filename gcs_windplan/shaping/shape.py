@@ -10,6 +10,7 @@ from gcs_windplan.shaping.relax import relax, settle
 from gcs_windplan.shaping.shorten import shorten
 from gcs_windplan.veil import Clearance
 
+_FREE: Final = ("time", "distance", "energy")  # costs under which vertices may leave the graph
 _CLOSER: Final = (1, 4, 16)  # times the wind's own sampling, one after the other, where that has missed something
 _CLOSEST: Final = 256  # times the same, for the comparison: finer than what vertices have moved under
 _ROUNDING: Final = 1e-9
@@ -18,14 +19,14 @@ _ROUNDING: Final = 1e-9
 def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
     """Few and good waypoints (m, 3) out of a graph's path (n, 3), never dearer than it in the chosen cost.
 
-    Time and distance are measured along any route, so vertices may leave the graph. The paper's angle and hybrid are
+    Time, distance and energy are measured along any route, so vertices may leave the graph. The paper's angle and hybrid are
     made for the graph's edges: a vertex that is free to follow them would stroll along the wind, away from the goal.
     Their routes are shortened only.
 
     Where the wind jumps, a leg may pass through the bad side of the jump between two samples, and relaxing would
     collect such legs. So the result is compared with the path under closer sampling, and relaxed under that if need be.
     """
-    if cost.choice.name not in ("time", "distance"):
+    if cost.choice.name not in _FREE:
         return shorten(points, cost, clearance)
     closest = cost.closer(_CLOSEST)
     limit = closest.of_polyline(points) * (1 + _ROUNDING)
@@ -45,7 +46,7 @@ def shape_quickly(points: FloatArray, cost: LegCost, clearance: Clearance) -> Fl
     closely. Over the Jacksboro fault that is 0.4 % above what `shape` finds. Never dearer than the path.
     """
     shortened = shorten(points, cost, clearance)
-    if cost.choice.name not in ("time", "distance"):
+    if cost.choice.name not in _FREE:
         return shortened
     settled, price = settle(shortened, cost, clearance)
     return settled if price <= cost.of_polyline(shortened) else shortened

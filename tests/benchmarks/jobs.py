@@ -60,7 +60,7 @@ def _search(world: Square, neighbours: int, way: str, bound: str = "h2") -> dict
     legal = np.full(world.n**2, 0xFFFFFFFF, dtype=np.uint32)
     path, seconds, expanded, _ = search_grid(
         np.array([1, world.n, world.n]), np.zeros(2), SPACING, grid_steps(neighbours, layered=False), world.heights,
-        legal, world.winds, estimates, cost.performance(), setting,
+        legal, world.winds, estimates, cost.performance(), setting, None,
         np.array([start]), np.zeros(1), np.zeros(1), np.zeros(1), np.array([goal]), world.winds[goal : goal + 1],
         None, 0, None, np.zeros(2, dtype=np.int64),
     )  # fmt: skip

@@ -44,7 +44,7 @@ def test_slowness_equals_its_twin(vehicle, direction, wind):
 def test_edge_time_equals_its_twin(vehicle, vector, a, b):
     expected = naive_edge_time(vehicle, np.array(vector) * 100, a, b)
     setting = edges.Setting(edges.TIME, 0.0, 0.0, 0.0)
-    found = edges.edge_between(performance_of(vehicle), setting, *(np.array(vector) * 100), *a, *b)
+    found = edges.edge_between(performance_of(vehicle), setting, None, *(np.array(vector) * 100), 0.0, *a, *b)
     assert found == pytest.approx(expected, rel=1e-9) or expected > 1e8
 
 

@@ -50,7 +50,9 @@ def complete_graph(vehicle: Vehicle, points: np.ndarray, winds: np.ndarray) -> n
     for i in range(n):
         for j in range(n):
             if i != j:
-                seconds[i, j] = edge_between(performance, setting, *(points[j] - points[i]), *winds[i], *winds[j])
+                seconds[i, j] = edge_between(
+                    performance, setting, None, *(points[j] - points[i]), 0.0, *winds[i], *winds[j]
+                )
     return seconds
 
 
@@ -101,7 +103,7 @@ def test_h2_is_exact_in_uniform_wind(seed, airspeed, share, blows):
     wind = np.array([share * airspeed * math.cos(blows), share * airspeed * math.sin(blows), 0.0])
     vehicle = Vehicle(airspeed)
     performance = performance_of(vehicle)
-    true = edge_between(performance, Setting(3.0, 0.0, 0.0, 0.0), *(b - a), *wind, *wind)
+    true = edge_between(performance, Setting(3.0, 0.0, 0.0, 0.0), None, *(b - a), 0.0, *wind, *wind)
     bounds = {name: remaining(performance, s, *a) for name, s in both_bounds(vehicle, wind[None], b).items()}
     assert bounds["h2"] == pytest.approx(true, rel=1e-9)
     assert bounds["h1"] <= bounds["h2"] * (1 + rounding)
@@ -125,7 +127,7 @@ def test_all_bounds_find_the_same_cost(seed, model):
         ("h2", bounds["h2"], np.empty(0)),
     ):
         _, costs[name], expanded[name], _ = search_csr(
-            first, neighbours, points, winds, estimates, performance, setting, 0, len(points) - 1,
+            first, neighbours, points, winds, estimates, performance, setting, None, 0, len(points) - 1,
             None, 0.0, 0, None, np.zeros(2, dtype=np.int64),
         )  # fmt: skip
     assert math.isfinite(costs["none"])

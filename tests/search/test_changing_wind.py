@@ -74,7 +74,7 @@ def test_on_a_grid_it_beats_no_bound_and_equals_it(seed):
     class Unbounded(LegCost):
         __slots__ = ()
 
-        def estimates(self, points, goal):
+        def estimates(self, points, start, goal, setting):
             return np.zeros(len(points))
 
     start, goal = veil.points[0], veil.points[veil.size - 1]
