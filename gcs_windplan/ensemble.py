@@ -35,14 +35,19 @@ class Spread:
         return sum(not np.isfinite(one) for one in self.seconds)
 
 
-def spread_of(request: Request, points: FloatArray, begin: float = 0.0) -> Spread | None:
-    """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble."""
+def spread_of(
+    request: Request, points: FloatArray, begin: float = 0.0, airspeeds: FloatArray | None = None
+) -> Spread | None:
+    """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble.
+
+    Each leg at the vehicle's airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
+    """
     if not request.members:
         return None
-    times = [fly_legs(points, member, request.vehicle, begin)[1] for member in request.members]
+    times = [fly_legs(points, member, request.vehicle, begin, airspeeds)[1] for member in request.members]
     energies = []
     if request.power is not None:
         for member, passed in zip(request.members, times, strict=True):
-            joules = leg_energies(points, passed, member, request.vehicle, request.power).sum()
+            joules = leg_energies(points, passed, member, request.vehicle, request.power, airspeeds).sum()
             energies.append(float(joules) if np.isfinite(joules) else float("inf"))
     return Spread(tuple(float(passed[-1] - begin) for passed in times), tuple(energies))

