@@ -73,7 +73,7 @@ def _priced(
 
 
 def _cheapest(price: Callable[[FloatArray], FloatArray], legs: int, between: tuple[float, float]) -> FloatArray:
-    """The airspeed of the smallest price for each leg: a scan, then golden sections between the best one's neighbours."""
+    """The airspeed of the smallest price for each leg: a scan, then golden sections around the best."""
     scanned = np.linspace(*between, _SCANNED)
     prices = np.stack([price(np.full(legs, airspeed)) for airspeed in scanned])
     least = prices.min(axis=0)

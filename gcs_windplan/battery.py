@@ -30,10 +30,13 @@ class BatteryUse:
         return max(self.total - self.allowed, 0.0)
 
 
-def battery_use(request: Request, flight: Flight, en_route: float | None = None) -> BatteryUse | None:
+def battery_use(
+    request: Request, flight: Flight, en_route: float | None = None, home_again: float = 0.0
+) -> BatteryUse | None:
     """What a flight takes from the battery; None where the airframe is not known.
 
-    `en_route` [J] takes the place of the flight's own energy between first and last waypoint.
+    `en_route` [J] takes the place of the flight's own energy between first and last waypoint; `home_again` [J] is what
+    a return at the end takes.
     """
     airframe, totals = request.airframe, flight.totals
     if airframe is None or totals.energy is None or totals.takeoff_energy is None or totals.landing_energy is None:
@@ -43,7 +46,7 @@ def battery_use(request: Request, flight: Flight, en_route: float | None = None)
     for leg in flight.legs:
         drawn += leg.energy or 0.0
         left.append(1 - drawn / battery.capacity)
-    ends = totals.takeoff_energy + (totals.landing_energy if request.finish == "land" else 0.0)
+    ends = totals.takeoff_energy + (totals.landing_energy if request.finish == "land" else home_again)
     total = ends + (totals.energy if en_route is None else max(en_route, totals.energy))
     return BatteryUse(tuple(left), total, battery.usable_energy, battery.energy_to_plan_with)
 

@@ -9,15 +9,16 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray
 from gcs_windplan.battery import battery_use
 from gcs_windplan.cores import available_cores
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, WindError
 from gcs_windplan.flight import Flight, fly, fly_legs
-from gcs_windplan.planner import Ready, find_route, prepare
+from gcs_windplan.homing import home_from_the_end
+from gcs_windplan.planner import prepare
 from gcs_windplan.request import Request
+from gcs_windplan.routing import FoundRoute, Ready, find_route
 from gcs_windplan.shaping import shape_quickly
 from gcs_windplan.wind.field import WindField
 
@@ -106,12 +107,13 @@ class _Job:
         try:
             found = find_route(self.ready, self.choice, begin, shape_quickly)
             flight = fly(
-                found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power
-            )
+                found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
+                found.airspeeds,
+            )  # fmt: skip
         except (NoRouteError, WindError) as error:
             return Departure(moment, reason=str(error), worked=time.process_time() - since)
-        spread = spread_of(request, found.points, begin)
-        wind, gust = self._strongest(found.points, begin)
+        spread = spread_of(request, found.points, begin, found.airspeeds)
+        wind, gust = self._strongest(found, begin)
         return Departure(
             moment, flight.totals.seconds, flight.totals.length, flight.totals.energy, spread, wind, gust,
             self._reason(flight, spread, begin), time.process_time() - since,
@@ -126,7 +128,9 @@ class _Job:
                 f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members{self._ending(flight, begin)}"
             )
         en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
-        use = battery_use(request, flight, en_route)
+        returns = request.finish == "return" and self.ready.power is not None
+        home_again = home_from_the_end(self.ready, flight, begin) if returns else 0.0
+        use = battery_use(request, flight, en_route, home_again)
         if use is None or use.missing == 0:
             return None
         return f"{use.total / 3600:.0f} of {use.allowed / 3600:.0f} Wh"
@@ -137,11 +141,11 @@ class _Job:
         near = len(times) > 1 and begin + _NEAR_THE_END * flight.totals.seconds > times[-1]
         return ", forecast ends" if near else ""
 
-    def _strongest(self, points: FloatArray, begin: float) -> tuple[float, float | None]:
+    def _strongest(self, found: FoundRoute, begin: float) -> tuple[float, float | None]:
         """The strongest wind and gust along a route in any member [m/s]."""
-        request = self.request
+        request, points = self.request, found.points
         fields: Sequence[WindField] = request.members or (request.wind,)
-        _, times = fly_legs(points, request.wind, request.vehicle, begin)
+        _, times = fly_legs(points, request.wind, request.vehicle, begin, found.airspeeds)
         share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
         places = (points[:-1, None] + share[None, :, None] * np.diff(points, axis=0)[:, None]).reshape(-1, 3)
         when = (times[:-1, None] + share[None, :] * np.diff(times)[:, None]).ravel()

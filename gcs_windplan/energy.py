@@ -37,7 +37,7 @@ def leg_energies(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AirAlong:
-    """The air at 16 places along n legs: their vectors (n, 3) [m], winds (n, 16, 3) [m/s], densities (n, 16) [kg/m³]."""
+    """The air at 16 places along n legs: vectors (n, 3) [m], winds (n, 16, 3) [m/s], densities (n, 16) [kg/m³]."""
 
     vectors: FloatArray
     winds: FloatArray
@@ -79,10 +79,8 @@ def _motion(
     along = (winds[:, :, :2] * track[:, None]).sum(axis=2)
     across = winds[:, :, 1] * track[:, :1] - winds[:, :, 0] * track[:, 1:]
     with np.errstate(invalid="ignore", divide="ignore"):
-        if vehicle.speed_model == "paper":
-            speed = airspeed + along
-        else:
-            speed = np.sqrt(airspeed**2 - across**2) + along
+        forward = airspeed if vehicle.speed_model == "paper" else np.sqrt(airspeed**2 - across**2)
+        speed = forward + along
         rise = vectors[:, 2:]
         rate = np.where(rise > 0, vehicle.climb + winds[:, :, 2], vehicle.descent - winds[:, :, 2])
         pace = np.maximum(np.where(level > 1e-6, level / speed, 0.0), np.abs(rise) / rate)

@@ -49,7 +49,7 @@ class Leg:
     Angles in degrees from true north, lengths in m, speeds in m/s. `distance` is level, `length` along the slope,
     `climb` the gain in height. `ground_speed` is the level mean over the leg. `wind_along` is positive from behind,
     `wind_across` from left to right, both means. `clearance` is the smallest and `height` the largest height above
-    ground. `energy` [J] is known where the vehicle's power is.
+    ground. `airspeed` is the one to hold, `energy` [J] is known where the vehicle's power is.
     """
 
     number: int
@@ -64,6 +64,7 @@ class Leg:
     seconds: float
     clearance: float
     height: float
+    airspeed: float
     energy: float | None = None
 
 
@@ -107,26 +108,37 @@ def fly(
     vehicle: Vehicle,
     begin: float = 0.0,
     power: PowerModel | None = None,
+    airspeeds: FloatArray | None = None,
 ) -> Flight:
     """Fly a polyline (n, 3): east, north, height above mean sea level [m], from `begin` on [s since departure].
+
+    Each leg is flown at the vehicle's airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
 
     Raises `NoRouteError` where a leg cannot be flown in the wind.
     """
     starts, ends = points[:-1], points[1:]
-    parts, times = fly_legs(points, wind, vehicle, begin)
+    parts, times = fly_legs(points, wind, vehicle, begin, airspeeds)
     _refuse_unflyable(parts, times, wind, np.hypot(*(ends - starts)[:, :2].T))
     heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
-    legs = tuple(_leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i])) for i in range(len(starts)))
+    speeds = np.full(len(starts), float(vehicle.airspeed)) if airspeeds is None else airspeeds
+    legs = tuple(
+        _leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i]), float(speeds[i]))
+        for i in range(len(starts))
+    )
     waypoints = _waypoints(points, frame, terrain, parts.seconds)
     flight = Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
     if power is None:
         return flight
-    return _with_energy(flight, leg_energies(points, times, wind, vehicle, power), vehicle, power)
+    return _with_energy(flight, leg_energies(points, times, wind, vehicle, power, speeds), vehicle, power)
 
 
 def fly_legs(
-    points: FloatArray, wind: WindField, vehicle: Vehicle, begin: float = 0.0
+    points: FloatArray,
+    wind: WindField,
+    vehicle: Vehicle,
+    begin: float = 0.0,
+    airspeeds: FloatArray | None = None,
 ) -> tuple[LegIntegrals, FloatArray]:
     """What the wind does along each leg of a polyline (n, 3), and the times at its points (n,) [s since departure].
 
@@ -134,7 +146,7 @@ def fly_legs(
     """
 
     def measure(when: FloatArray | None) -> tuple[LegIntegrals, FloatArray]:
-        parts = integrate(wind, vehicle, points[:-1], points[1:], when)
+        parts = integrate(wind, vehicle, points[:-1], points[1:], when, airspeeds)
         return parts, parts.seconds
 
     return clocked(measure, still_air_times(points, vehicle, begin), len(wind.times) > 1)
@@ -155,7 +167,7 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
         if not np.isfinite(parts.along[i] + parts.across[i]):
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"
-                " wind is not known there. Use a finer graph, a max_height below that level, or a higher wind.",
+                " wind is not known there. Use a finer graph, a limits.max_height below that level, or a higher wind.",
                 {"wind": len(stopped)},
             )
         if lengths[i] < 1e-6:
@@ -172,7 +184,9 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
         )
 
 
-def _leg(i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, convergence_deg: float) -> Leg:
+def _leg(
+    i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, convergence_deg: float, airspeed: float
+) -> Leg:
     """One leg's figures from its vector [m] and its share of the integrals."""
     distance, length = math.hypot(vector[0], vector[1]), float(np.linalg.norm(vector))
     seconds = float(parts.seconds[i])
@@ -194,6 +208,7 @@ def _leg(i: int, vector: FloatArray, parts: LegIntegrals, heights: FloatArray, c
         seconds=seconds,
         clearance=float(heights[0]),
         height=float(heights[1]),
+        airspeed=airspeed,
     )
 
 

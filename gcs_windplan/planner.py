@@ -5,24 +5,26 @@ request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shapi
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
-from typing import NoReturn
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.battery import BatteryUse, battery_use, refuse_overdrawn
-from gcs_windplan.cost import CostChoice, LegCost
+from gcs_windplan.budget import quickest_within
+from gcs_windplan.cost import CostChoice
 from gcs_windplan.ensemble import Spread, spread_of
-from gcs_windplan.errors import NoRouteError, RequestError, WindError
+from gcs_windplan.errors import BatteryError, NoRouteError, RequestError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
+from gcs_windplan.homing import WaysHome, home_from_the_end, refuse_stranded, ways_home
 from gcs_windplan.request import Request, Roadmap
-from gcs_windplan.search import WindyVeil, blow, find_path
-from gcs_windplan.shaping import shape
+from gcs_windplan.routing import FoundRoute, Ready, find_route, power_of, unshaped
+from gcs_windplan.search import WindyVeil, blow
+from gcs_windplan.shaping import shape, shape_quickly
 from gcs_windplan.siting import (
     choose_area,
     choose_layers,
@@ -54,8 +56,9 @@ class Plan:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
     `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
-    the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `battery` is
-    known where the airframe is; `notes` say what a pilot must know before flying it.
+    the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `battery`
+    and `ways_home` from each waypoint are known where the airframe is; `notes` say what a pilot must know before flying
+    it.
     """
 
     request: Request
@@ -66,6 +69,7 @@ class Plan:
     effort: Effort
     spread: Spread | None = None
     battery: BatteryUse | None = None
+    ways_home: WaysHome | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -91,34 +95,28 @@ class Plan:
         )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Ready:
-    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share."""
-
-    request: Request
-    rules: Clearance
-    sites: FloatArray
-    windy: WindyVeil
-    seconds: float
-
-    def in_the_mean(self) -> Ready:
-        """The same without the members of an ensemble: only their mean blows."""
-        if not self.request.members:
-            return self
-        request = replace(self.request, members=())
-        return replace(self, request=request, windy=blow(self.windy.veil, request.wind))
-
-
 def plan_route(request: Request) -> Plan:
     """Plan the request's route by its own cost.
 
     Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
     `TerrainError` where the data do not cover the place, `NoRouteError` where no route exists, and `BatteryError` where
-    the best one breaks the battery's reserve.
+    the best one breaks the battery's reserve, or leads to where the vehicle cannot come home from.
     """
-    plan = plan_routes(request, [request.cost])[0]
-    refuse_overdrawn(plan.battery)
+    ready = prepare(request)
+    plan = plan_ready(ready, request.cost)
+    try:
+        refuse_unsafe(plan)
+    except BatteryError as error:
+        raise BatteryError(f"{error}{_thriftier(ready)}") from error
     return plan
+
+
+def refuse_unsafe(plan: Plan) -> None:
+    """Raise `BatteryError` for a plan that its battery does not carry through, or not home."""
+    refuse_overdrawn(plan.battery)
+    wanted = plan.request.limits.way_home
+    if wanted or (wanted is None and plan.request.finish == "return"):
+        refuse_stranded(plan.ways_home, plan.battery, plan.flight)
 
 
 def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
@@ -146,23 +144,52 @@ def prepare(request: Request) -> Ready:
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
     windy = blow(_lay_veil(request, rules, layers, sites, area), request.wind, request.members)
-    return Ready(request, rules, sites, windy, time.perf_counter() - begin)
+    return Ready(request, rules, sites, windy, time.perf_counter() - begin, power_of(request, windy, sites))
 
 
 def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
+
+    By `time` with airspeeds that are free it is the quickest that the battery allows.
+    """
+    if choice.name != "time" or not ready.request.free_airspeed or ready.request.airframe is None:
+        return _planned(ready, choice, begin)
+    battery, power = ready.request.airframe.battery, ready.request.airframe.power
+    allowed = battery.energy_to_plan_with
+    quick, worth = quickest_within(
+        lambda worth: _planned(ready, choice, begin, worth, shape_quickly),
+        lambda plan: math.inf if plan.battery is None else plan.battery.total,
+        allowed,
+        float(power.watts(ready.request.vehicle.airspeed, 0.0)),
+    )
+    plan = _planned(ready, choice, begin, worth)
+    fits = plan.battery is not None and plan.battery.total <= allowed
+    return plan if fits or worth == 0.0 else quick
+
+
+def _planned(
+    ready: Ready,
+    choice: CostChoice,
+    begin: float,
+    worth: float = math.inf,
+    shaping: Callable[..., FloatArray] = shape,
+) -> Plan:
+    """The plan for one worth of time.
 
     Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the
     whole: the one for the members' mean is flown in all members too, and the better one is taken.
     """
     request = ready.request
     try:
-        found, spread = _best_route(ready, choice, begin)
+        found, spread = _best_route(ready, choice, begin, worth, shaping)
     except NoRouteError as error:
         raise NoRouteError(
             f"{error}{until_it_opens(begin, ready.windy.ends, partial(_lasting, ready))}", error.cuts
         ) from error
-    flight = fly(found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power)
+    flight = fly(
+        found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
+        found.airspeeds,
+    )  # fmt: skip
     effort = Effort(
         ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
         found.shaping_seconds,
@@ -171,30 +198,57 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     if found.deferred:
         notes += where_it_pays(found.arrival - begin, begin, partial(_lasting, ready))
     en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
-    battery = battery_use(request, flight, en_route)
-    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, notes)
+    battery = battery_use(request, flight, en_route, _home_again(ready, flight, begin))
+    ways = None
+    if battery is not None and request.airframe is not None and shaping is shape:
+        ways = ways_home(ready, flight, battery, request.airframe.battery.capacity, begin)
+    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes)
 
 
-def _best_route(ready: Ready, choice: CostChoice, begin: float) -> tuple[FoundRoute, Spread | None]:
+def _home_again(ready: Ready, flight: Flight, begin: float) -> float:
+    """What the return at the end takes [J]; nothing where there is none, or nobody knows."""
+    returns = ready.request.finish == "return" and ready.power is not None
+    return home_from_the_end(ready, flight, begin) if returns else 0.0
+
+
+def _thriftier(ready: Ready) -> str:
+    """Whether the route of least energy would do, in words."""
+    choice = CostChoice("energy")
+    try:
+        plan = plan_ready(ready, choice)
+        refuse_unsafe(plan)
+    except (BatteryError, NoRouteError):
+        return ""
+    assert plan.battery is not None
+    return (
+        f" Planned by `energy` it takes {plan.battery.total / 3600:.0f} Wh in {clock(plan.totals.seconds)} min en route"
+        " and keeps the reserve: `--cost energy`."
+    )
+
+
+def _best_route(
+    ready: Ready, choice: CostChoice, begin: float, worth: float, shaping: Callable[..., FloatArray]
+) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
     request = ready.request
     if not request.members:
-        return find_route(ready, choice, begin), None
-    ways = [ready, ready.in_the_mean()] if choice.name == "time" else [ready]
+        return find_route(ready, choice, begin, shaping, worth), None
+    ways = [ready, ready.in_the_mean()] if choice.name in ("time", "energy") else [ready]
     candidates, error = [], None
     for way in ways:
         try:
-            found = find_route(way, choice, begin)
+            found = find_route(way, choice, begin, shaping, worth)
         except NoRouteError as no_route:
             error = error or no_route
             continue
-        spread = spread_of(request, found.points, begin)
+        spread = spread_of(request, found.points, begin, found.airspeeds)
         assert spread is not None
         candidates.append((found, spread))
     if not candidates:
         assert error is not None
         raise error
-    found, spread = min(candidates, key=lambda candidate: candidate[1].at(request.robust))
+    measure = Spread.energy_at if choice.name == "energy" else Spread.at
+    found, spread = min(candidates, key=lambda candidate: measure(candidate[1], request.robust))
     if not np.isfinite(spread.at(request.robust)):
         able = len(spread.seconds) - spread.unflyable
         raise NoRouteError(
@@ -214,64 +268,6 @@ def _lay_veil(
     if isinstance(graph, Roadmap):
         return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
     return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
-
-
-@dataclass(slots=True, eq=False)
-class FoundRoute:
-    """A route: its points (n, 3), when it arrives [s since departure], what it costs, and what finding it took."""
-
-    points: FloatArray
-    arrival: float
-    cost: float = 0.0
-    graph_cost: float = 0.0
-    vertices: int = 1
-    expanded: int = 0
-    deferred: int = 0
-    search_seconds: float = 0.0
-    shaping_seconds: float = 0.0
-
-
-def find_route(
-    ready: Ready, choice: CostChoice, begin: float, shaping: Callable[..., FloatArray] = shape
-) -> FoundRoute:
-    """Search and shape each section between two sites, one after the other in time."""
-    found = FoundRoute(ready.sites[:1], begin)
-    for start, goal in pairwise(ready.sites):
-        cost = _cost_between(ready, choice, start, goal, found.arrival)
-        path = find_path(ready.windy, cost, start, goal, found.arrival)
-        since = time.perf_counter()
-        shaped = shaping(path.points, cost, ready.rules)
-        found.shaping_seconds += time.perf_counter() - since
-        found.search_seconds += path.seconds
-        found.expanded += path.expanded
-        found.deferred += path.deferred
-        found.vertices += len(path.points) - 1
-        prices, times = cost.priced(shaped)
-        found.cost += float(np.sum(prices))
-        found.graph_cost += cost.of_polyline(path.points)
-        found.points = np.concatenate([found.points, shaped[1:]])
-        if not np.isfinite(times[-1]):
-            _refuse(ready.request, found.points, begin)
-        found.arrival = float(times[-1])
-    return found
-
-
-def _refuse(request: Request, points: FloatArray, begin: float) -> NoReturn:
-    """Raise `NoRouteError` for a route (n, 3) on which the wind, looked at closely, is worse than at the nodes."""
-    fly(points, request.frame, request.terrain, request.wind, request.vehicle, begin)  # says on which leg, if on one
-    raise NoRouteError(
-        "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"
-        " closely: a finer graph, more airspeed, another departure, or a lower `robust`.",
-        {"wind": 1},
-    )
-
-
-def _cost_between(ready: Ready, choice: CostChoice, start: FloatArray, goal: FloatArray, begin: float) -> LegCost:
-    """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
-    request = ready.request
-    straight = float(np.linalg.norm(goal - start))
-    edge = ready.windy.veil.edge_length
-    return LegCost(choice, request.wind, request.vehicle, edge, straight, begin, request.members, request.robust)
 
 
 def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
@@ -297,13 +293,8 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
 def _lasting(ready: Ready, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        found = find_route(ready, CostChoice("time"), begin, _unshaped)
+        found = find_route(ready, CostChoice("time"), begin, unshaped)
     except (NoRouteError, WindError):
         return float("inf")
-    spread = spread_of(ready.request, found.points, begin)
+    spread = spread_of(ready.request, found.points, begin, found.airspeeds)
     return found.arrival - begin if spread is None else spread.at(ready.request.robust)
-
-
-def _unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
-    """The graph's path as it is."""
-    return points

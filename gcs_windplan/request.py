@@ -78,17 +78,34 @@ class Export:
     plan: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What wind and battery the route must keep to; None where there is no limit.
+
+    `wind` and `gust` [m/s] are the largest anywhere along the route. On landing must be left `battery`, a share of the
+    capacity, and `reserve_seconds` of level flight at the vehicle's airspeed. `way_home`: whether home or a rally point
+    must be within the battery's reach from every waypoint; None: only where the vehicle returns at the end.
+    """
+
+    wind: float | None = None
+    gust: float | None = None
+    battery: float | None = None
+    reserve_seconds: float | None = None
+    way_home: bool | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
     """One planning job.
 
-    `clearance` and `max_height` [m above ground] hold for every leg along its whole length. `layers` are heights above
-    ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites. A vehicle that
-    returns at the end flies home at `return_height` above home [m], or higher if it is; or to the nearest `rally`
-    point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into the mission
-    beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for the `robust`
-    quantile of its legs' cost over them. `gusts` are the forecast's, one field a member, where it tells any. With an
-    `airframe` the energy is known. `locate` puts file and line to a problem that names a field.
+    `clearance`, `max_height` [m above ground] and `limits` hold for every leg along its whole length. `layers` are
+    heights above ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites.
+    A vehicle that returns at the end flies home at `return_height` above home [m], or higher if it is; or to the
+    nearest `rally` point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into
+    the mission beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for
+    the `robust` quantile of its legs' cost over them. `gusts` are the forecast's, one field a member, where it tells
+    any. With an `airframe` the energy is known, and each leg's airspeed may be chosen (`free_airspeed`). `locate` puts
+    file and line to a problem that names a field.
     """
 
     name: str
@@ -101,6 +118,7 @@ class Request:
     via: tuple[Site, ...] = ()
     clearance: float = 30.0
     max_height: float | None = None
+    limits: Limits = field(default_factory=Limits)
     cost: CostChoice = field(default_factory=CostChoice)
     graph: Uniform | Roadmap = field(default_factory=Uniform)
     layers: tuple[float, ...] = ()
@@ -119,6 +137,7 @@ class Request:
     robust: float = 0.5
     gusts: tuple[WindField, ...] = ()
     airframe: Airframe | None = None
+    free_airspeed: bool = False
     locate: Callable[[Problem], Problem] = lambda problem: problem
 
     @property

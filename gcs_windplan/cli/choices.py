@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MissionFile: TypeAlias = Annotated[Path, typer.Argument(metavar="MISSION.yaml", help="The mission file.")]
 Airspeed: TypeAlias = Annotated[
-    str | None, typer.Option(metavar="SPEED", help="Airspeed in place of the file's: 12, '24 kt'.")
+    str | None, typer.Option(metavar="SPEED", help="Airspeed in place of the file's: 12, '24 kt', free.")
 ]
 Folder: TypeAlias = Annotated[
     Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="Where to write; default out/NAME.")
@@ -27,18 +27,22 @@ def read_request(
     """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in it."""
     from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.spec import read_mission
-    from gcs_windplan.spec.values import AIRSPEED
+    from gcs_windplan.spec.values import AIRSPEED_OR_FREE, FREE
 
     speed = None
     if airspeed is not None:
         try:
-            speed = AIRSPEED.read(airspeed)
+            speed = AIRSPEED_OR_FREE.read(airspeed)
         except ValueError as error:
             raise InputError(Problem(str(error), "--airspeed")) from None
     request = read_mission(mission, departure) if lasting is None else read_mission(mission, departure, lasting)
     if speed is None:
         return request
-    return replace(request, vehicle=replace(request.vehicle, airspeed=speed))
+    if speed == FREE:
+        if request.airframe is None:
+            raise InputError(Problem("to be free to choose asks for the mission's vehicle.airframe", "--airspeed"))
+        return replace(request, free_airspeed=True)
+    return replace(request, vehicle=replace(request.vehicle, airspeed=float(speed)), free_airspeed=False)
 
 
 def output_folder(folder: Path | None, request: Request) -> Path:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, output_folder, read_request
 
-HELP = "Plan by every cost; print time, length, waypoints and search time side by side; write compare.png."
+HELP = "Plan by every cost; print time, energy, length and search time side by side; write compare.png."
 
 
 def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = None) -> None:
@@ -18,7 +18,8 @@ def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = No
     from gcs_windplan.review import draw_map
 
     hybrid = request.cost if request.cost.name == "hybrid" else CostChoice("hybrid")
-    choices = [hybrid if name == "hybrid" else CostChoice(name) for name in COST_NAMES]
+    names = [name for name in COST_NAMES if name != "energy" or request.airframe is not None]
+    choices = [hybrid if name == "hybrid" else CostChoice(name) for name in names]
     plans = plan_routes(request, choices)
     picture = draw_map(plans)
     folder = output_folder(output, request)

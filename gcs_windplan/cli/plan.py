@@ -21,7 +21,7 @@ def plan(
     mission: MissionFile,
     cost: Annotated[
         str | None,
-        typer.Option(metavar="COST", help="distance, angle, hybrid or time in place of the file's."),
+        typer.Option(metavar="COST", help="distance, angle, hybrid, time or energy in place of the file's."),
     ] = None,
     airspeed: Airspeed = None,
     output: Folder = None,

@@ -14,11 +14,11 @@ from gcs_windplan.flight import clock
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
-_WIDTH = 100  # where the output is no terminal
+_WIDTH = 110  # where the output is no terminal
 
 
 def make_console() -> Console:
-    """The terminal, or 100 columns where there is none."""
+    """The terminal, or 110 columns where there is none."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
 
@@ -27,14 +27,13 @@ def print_legs(plan: Plan) -> None:
     """The legs of a plan, a row each, and the totals."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     for name in ("leg", "track °", "heading °", "length m", "climb m", "to m AMSL", "ground m/s", "wind along",
-                 "across m/s", "time", "AGL m", *(["battery %"] if plan.battery else [])):  # fmt: skip
+                 "across m/s", "time", "AGL m", *_power_columns(plan)):  # fmt: skip
         table.add_column(name, justify="right")
-    left = [[f"{100 * share:.0f}"] for share in plan.battery.left[1:]] if plan.battery else [[]] * len(plan.legs)
-    for leg, target, rest in zip(plan.legs, plan.waypoints[1:], left, strict=True):
+    for leg, target, rest in zip(plan.legs, plan.waypoints[1:], _power_cells(plan), strict=True):
         table.add_row(
             f"{leg.number}", f"{leg.track_deg:03.0f}", f"{leg.heading_deg:03.0f}", f"{leg.length:.0f}",
             f"{leg.climb:+.0f}", f"{target.altitude:.1f}", f"{leg.ground_speed:.1f}", f"{leg.wind_along:+.1f}",
-            f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f} - {leg.height:.0f}", *rest,
+            f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f}-{leg.height:.0f}", *rest,
         )  # fmt: skip
     console = make_console()
     console.print(table)
@@ -44,6 +43,25 @@ def print_legs(plan: Plan) -> None:
         console.print(flown, soft_wrap=True, markup=False)
     for note in plan.notes:
         console.print(f"note: {note}", soft_wrap=True, markup=False)
+
+
+def _power_columns(plan: Plan) -> list[str]:
+    """What the table says of airspeeds and the battery, where that is known."""
+    free = ["air m/s"] if plan.request.free_airspeed else []
+    return free + (["battery %", "home Wh"] if plan.battery and plan.ways_home else [])
+
+
+def _power_cells(plan: Plan) -> list[list[str]]:
+    """The same for each leg."""
+    free = [[f"{leg.airspeed:.1f}"] if plan.request.free_airspeed else [] for leg in plan.legs]
+    if plan.battery is None or plan.ways_home is None:
+        return free
+    known = zip(free, plan.battery.left[1:], plan.ways_home.energies[1:], strict=True)
+    return [[*cells, f"{100 * left:.0f}", _whole_watt_hours(home)] for cells, left, home in known]
+
+
+def _whole_watt_hours(joules: float) -> str:
+    return f"{joules / 3600:.0f}" if joules < float("inf") else "no way"
 
 
 def flown_line(plan: Plan) -> str | None:
@@ -65,6 +83,7 @@ def summary_lines(plan: Plan) -> list[str]:
     return [
         *_head(plan),
         *_energy(plan),
+        *_way_home(plan),
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
         f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
@@ -105,6 +124,23 @@ def _energy(plan: Plan) -> list[str]:
     ]
 
 
+def _way_home(plan: Plan) -> list[str]:
+    """How far home stays within reach, where that is known."""
+    ways = plan.ways_home
+    if ways is None:
+        return []
+    most = f"home takes at most {watt_hours(max(ways.energies))} Wh"
+    if plan.request.rally:
+        most += f", a rally point at most {watt_hours(max(ways.diversions))} Wh"
+    if ways.no_return is None:
+        return [f"{most}; it is in reach with the reserve from every waypoint"]
+    point = ways.no_return
+    if point.distance == 0:
+        return [f"{most}; it is not in reach with the reserve from any waypoint"]
+    where = f"{point.distance / 1000:.2f} km, {clock(point.seconds)} min, on leg {point.leg}"
+    return [f"{most}; point of no return with the reserve: {where}"]
+
+
 def watt_hours(joules: float) -> str:
     """An energy [J] in Wh, which may be infinite."""
     return f"{joules / 3600:.1f}" if joules < float("inf") else "never"
@@ -129,19 +165,46 @@ def print_comparison(plans: Sequence[Plan]) -> None:
     """Several plans of one request, a row each."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("least", justify="left", no_wrap=True)
-    for name in ("time min", "against best", "length km", "points", "climb m", "AGL m",
-                 "expanded", "search s"):  # fmt: skip
+    powered = all(plan.totals.energy is not None for plan in plans)
+    for name in ("time min", "more", *(["energy Wh", "more"] if powered else []), "length km", "points", "climb m",
+                 "AGL m", "expanded", "search s"):  # fmt: skip
         table.add_column(name, justify="right")
     best = min(plan.totals.seconds for plan in plans)
+    least = min(plan.totals.energy or 0.0 for plan in plans)
     for plan in plans:
         totals, effort = plan.totals, plan.effort
+        energy: list[str] = []
+        if powered and totals.energy is not None:
+            energy = [f"{totals.energy / 3600:.1f}", f"+{100 * (totals.energy / least - 1):.1f} %"]
         table.add_row(
-            plan.choice.name, clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %",
+            plan.choice.name, clock(totals.seconds), f"+{100 * (totals.seconds / best - 1):.1f} %", *energy,
             f"{totals.length / 1000:.2f}", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
-            f"{totals.clearance:.0f} - {totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
+            f"{totals.clearance:.0f}-{totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
         )  # fmt: skip
     console = make_console()
     console.print(table)
+    for line in _gain(plans) if powered else []:
+        console.print(line, soft_wrap=True)
     hybrid = next((plan.choice for plan in plans if plan.choice.name == "hybrid"), None)
     if hybrid is not None:
         console.print(f"hybrid weighs distance {hybrid.distance:g} and angle {hybrid.angle:g}", soft_wrap=True)
+
+
+def _gain(plans: Sequence[Plan]) -> list[str]:
+    """What least energy gains against the shortest way, and how high it flies in which wind."""
+    by_name = {plan.choice.name: plan for plan in plans}
+    shortest, thriftiest = by_name["distance"].totals.energy, by_name["energy"].totals.energy
+    if shortest is None or thriftiest is None:
+        return []
+    heights = [mean_height(by_name["energy"], sign) for sign in (-1, 1)]
+    line = f"energy takes {watt_hours(shortest - thriftiest)} Wh less than distance"
+    if None in heights:
+        return [line]
+    return [f"{line}; it flies {heights[0]:.0f} m above ground in head wind and {heights[1]:.0f} m in tail wind (mean)"]
+
+
+def mean_height(plan: Plan, sign: int) -> float | None:
+    """The mean height above ground [m] of the legs with the wind from behind (1) or from ahead (-1), by their length."""
+    legs = [leg for leg in plan.legs if leg.wind_along * sign > 0 and leg.distance > 0]
+    total = sum(leg.distance for leg in legs)
+    return sum(leg.distance * (leg.clearance + leg.height) / 2 for leg in legs) / total if total else None

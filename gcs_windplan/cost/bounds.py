@@ -6,8 +6,8 @@ the price of every displacement if no velocity over ground gains on it faster th
 
     s (V + r + n · c) + β (climb rate + draught) ≤ P(V, climb rate)    for all V and climb rates,
 
-so s is the smallest (P_β(V)) / (V + r + n · c), where P_β(V) is the least of P − β · climb rate, less β times the draught.
-Each plane is linear, and the largest of several is a consistent lower bound: what A* needs to be optimal.
+so s is the smallest P_β(V) / (V + r + n · c), where P_β(V) is the least of P − β · climb rate, less β times the
+draught. Each plane is linear, and the largest of several is a consistent lower bound: what A* needs to be optimal.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def planes_of(setting: Setting, grid: PowerGrid, slope: float) -> FloatArray | N
 
     The table is linear between its knots, so the least quotient lies at a knot.
     """
-    heights, climbs, speeds = grid.watts.shape
+    _, climbs, speeds = grid.watts.shape
     rates = grid.lowest_climb + grid.climb_step * np.arange(climbs)
     draught = setting.ball_up if slope > 0 else setting.ball_down
     spare = (grid.watts - slope * rates[:, None]).min(axis=(0, 1)) + grid.worth - abs(slope) * draught
@@ -79,4 +79,4 @@ def _lift(grid: PowerGrid) -> float:
     middle = grid.watts[:, :, grid.watts.shape[2] // 2]
     rise = middle[:, -1] - middle[:, 0]
     span = grid.climb_step * (grid.watts.shape[1] - 1)
-    return float(np.max(np.abs(rise[np.isfinite(rise)]), initial=0.0)) / span
+    return float(np.max(np.abs(rise[np.isfinite(rise)]), initial=0.0) / span)

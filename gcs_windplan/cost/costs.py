@@ -121,10 +121,11 @@ class LegCost:
         """Whether the wind changes with time."""
         return len(self.wind.times) > 1
 
-    @property
-    def least_time(self) -> bool:
-        """Whether it is the time alone."""
-        return self.choice.name == "time" and self.power is None
+    def least_in(self, seconds: float) -> float:
+        """What a way that lasts so long [s] costs at least."""
+        if self.power is not None:
+            return seconds * (float(self.power.watts.min()) + self.power.worth)
+        return seconds if self.choice.name == "time" else 0.0
 
     @property
     def rank(self) -> int:

@@ -82,9 +82,10 @@ def search_grid(
 
     `shape` layers, rows, columns; `corner` east and north of the first node [m]; `steps` (2 m, 3) moves in layers,
     rows, columns, where step k + m undoes step k; `heights` (nodes,) [m]; `legal` (nodes,) bit k of a node: its step
-    k < m is an edge; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`; `estimates` (nodes,) in place of
-    `remaining`, or empty. The search begins at `seeds` with their costs, keys (cost and estimate) and clocks [s], and
-    ends with the cheapest of `targets` plus the edge from there to the goal, whose winds are shaped as a single node's.
+    k < m is an edge; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`; `estimates` (nodes,) in place
+    of `remaining`, or empty. The search begins at `seeds` with their costs, keys (cost and estimate) and clocks [s],
+    and ends with the cheapest of `targets` plus the edge from there to the goal, whose winds are shaped as a single
+    node's.
 
     Returns the nodes from seed to target (empty: none reached), the cost, how many nodes were expanded, and the cost of
     every node reached (infinite elsewhere).
@@ -205,8 +206,8 @@ def search_csr(
 ) -> tuple[IntArray, float, int, FloatArray]:  # fmt: skip
     """A* on a graph whose node i has the neighbours first[i] .. first[i + 1] - 1.
 
-    `points` (nodes, 3) [m]; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`, `begin` the clock at the start
-    [s]; `estimates` (nodes,) in place of `remaining`, or empty. Returns as `search_grid` does.
+    `points` (nodes, 3) [m]; `winds`, `grid`, `times`, `rank`, `each` and `tally` as in `edges`, `begin` the clock at
+    the start [s]; `estimates` (nodes,) in place of `remaining`, or empty. Returns as `search_grid` does.
     """
     n = points.shape[0]
     reached = np.empty(n)

@@ -111,9 +111,10 @@ def integrate_legs(
 ) -> FloatArray:  # fmt: skip
     """Integrals along n legs, shape (n, 4): time [s], ∫angle ds [rad m], mean wind along and across [m/s].
 
-    `airspeeds` (n,) [m/s] of the legs, `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] .. first[i + 1] - 1, whose `weights` sum
-    to 1 and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of no length takes no time. Across is
-    positive from left to right. Time is infinite where the wind is too strong, or not known (NaN).
+    `airspeeds` (n,) [m/s] of the legs, `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] ..
+    first[i + 1] - 1, whose `weights` sum to 1 and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of
+    no length takes no time. Across is positive from left to right. Time is infinite where the wind is too strong, or
+    not known (NaN).
     """
     n = vectors.shape[0]
     result = np.zeros((n, 4))

@@ -57,7 +57,7 @@ def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArr
     while True:
         windy.cover(clock, clock + horizon)
         found = find(windy, cost, start, goal, clock)
-        complete = len(found.points) > 0 and (cost.least_time or found.outlasted == 0)
+        complete = len(found.points) > 0 and found.cost <= cost.least_in(horizon)
         reaches = windy.times is None or clock + horizon >= windy.ends
         if complete or reaches or found.outlasted == 0:
             break

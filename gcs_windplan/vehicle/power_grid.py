@@ -28,10 +28,10 @@ def tabulate(
     Level flight is a knot of the climb rates, since powers have a kink there. Infinite where the model knows no power.
     """
     fastest = float(np.max(airspeeds))
-    speeds = np.linspace(0.0, fastest, _SPEEDS)
+    speeds: FloatArray = np.linspace(0.0, fastest, _SPEEDS)
     step = max(vehicle.climb, vehicle.descent) / _RATES
     lowest, highest = -math.ceil(vehicle.descent / step), math.ceil(vehicle.climb / step)
-    rates = step * np.arange(lowest, highest + 1)
+    rates = step * np.arange(lowest, highest + 1, dtype=np.float64)
     low, high = heights[0], max(heights[1], heights[0] + 1.0)
     levels = np.linspace(low, high, _HEIGHTS)
     watts = np.stack([_layer(power, rates, speeds, float(density)) for density in air_density(levels)])

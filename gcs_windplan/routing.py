@@ -1,0 +1,176 @@
+"""One route: search and shape each section between two sites, one after the other in time, then choose airspeeds."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NoReturn
+
+import numpy as np
+
+from gcs_windplan.airspeeds import best_airspeeds
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.cost import CostChoice, LegCost
+from gcs_windplan.errors import NoRouteError, Problem, RequestError
+from gcs_windplan.flight import fly
+from gcs_windplan.kernels.power import PowerGrid
+from gcs_windplan.request import Request
+from gcs_windplan.search import WindyVeil, blow, find_path
+from gcs_windplan.shaping import shape
+from gcs_windplan.vehicle import Vehicle, airspeed_choices, tabulate
+from gcs_windplan.veil import Clearance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ready:
+    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
+
+    `power` is there where the airframe is known.
+    """
+
+    request: Request
+    rules: Clearance
+    sites: FloatArray
+    windy: WindyVeil
+    seconds: float
+    power: PowerGrid | None = None
+
+    def in_the_mean(self) -> Ready:
+        """The same without the members of an ensemble: only their mean blows."""
+        if not self.request.members:
+            return self
+        request = replace(self.request, members=())
+        return replace(self, request=request, windy=blow(self.windy.veil, request.wind))
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle, at the largest airspeed if it is free to choose: so fast it goes where time is all."""
+        request = self.request
+        if not request.free_airspeed or request.airframe is None:
+            return request.vehicle
+        return replace(request.vehicle, airspeed=request.airframe.maximum_airspeed)
+
+
+@dataclass(slots=True, eq=False)
+class FoundRoute:
+    """A route: its points (n, 3), when it arrives [s since departure], what it costs, and what finding it took.
+
+    `airspeeds` (n - 1,) [m/s] of the legs where they are chosen, None where all are flown at the vehicle's.
+    """
+
+    points: FloatArray
+    arrival: float
+    cost: float = 0.0
+    graph_cost: float = 0.0
+    vertices: int = 1
+    expanded: int = 0
+    deferred: int = 0
+    search_seconds: float = 0.0
+    shaping_seconds: float = 0.0
+    airspeeds: FloatArray | None = None
+
+
+def power_of(request: Request, windy: WindyVeil, sites: FloatArray) -> PowerGrid | None:
+    """The vehicle's power between the lowest and the highest place of the veil; None where no airframe tells it.
+
+    Raises `RequestError` where a cost or free airspeeds ask for it.
+    """
+    airframe = request.airframe
+    if airframe is None:
+        if request.cost.name == "energy":
+            problem = Problem("energy asks for the vehicle's power: name its airframe in vehicle.airframe", "cost")
+            raise RequestError([request.locate(problem)])
+        return None
+    if request.vehicle.speed_model == "paper" and (request.cost.name == "energy" or request.free_airspeed):
+        problem = Problem("the paper's speed model has no airspeed to draw power at: `triangle`", "vehicle.speed_model")
+        raise RequestError([request.locate(problem)])
+    heights = np.concatenate([windy.points[:, 2], sites[:, 2]])
+    between = float(np.nanmin(heights)), float(np.nanmax(heights))
+    if request.free_airspeed:
+        airspeeds = airspeed_choices(airframe, sum(between) / 2)
+    else:
+        airspeeds = np.array([request.vehicle.airspeed])
+    return tabulate(airframe.power, request.vehicle, airspeeds, between)
+
+
+def find_route(
+    ready: Ready,
+    choice: CostChoice,
+    begin: float,
+    shaping: Callable[..., FloatArray] = shape,
+    worth: float = math.inf,
+) -> FoundRoute:
+    """The route by a cost that begins at `begin` [s since departure]. Raises `NoRouteError`.
+
+    By `time` a finite `worth` [W] weighs seconds against energy; all other costs ignore it.
+    """
+    found = FoundRoute(ready.sites[:1], begin)
+    for start, goal in pairwise(ready.sites):
+        cost = cost_between(ready, choice, start, goal, found.arrival, worth)
+        path = find_path(ready.windy, cost, start, goal, found.arrival)
+        since = time.perf_counter()
+        shaped = shaping(path.points, cost, ready.rules)
+        found.shaping_seconds += time.perf_counter() - since
+        found.search_seconds += path.seconds
+        found.expanded += path.expanded
+        found.deferred += path.deferred
+        found.vertices += len(path.points) - 1
+        prices, times = cost.priced(shaped)
+        found.cost += float(np.sum(prices))
+        found.graph_cost += cost.of_polyline(path.points)
+        found.points = np.concatenate([found.points, shaped[1:]])
+        if not np.isfinite(times[-1]):
+            _refuse(ready, found.points, begin)
+        found.arrival = float(times[-1])
+    found.airspeeds = _airspeeds(ready, choice, found.points, begin, worth)
+    return found
+
+
+def cost_between(
+    ready: Ready, choice: CostChoice, start: FloatArray, goal: FloatArray, begin: float, worth: float = math.inf
+) -> LegCost:
+    """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
+    request = ready.request
+    straight = float(np.linalg.norm(goal - start))
+    edge = ready.windy.veil.edge_length
+    power = None
+    if choice.name == "energy":
+        power = ready.power
+    elif choice.name == "time" and ready.power is not None and math.isfinite(worth):
+        power = ready.power._replace(worth=worth)
+    return LegCost(
+        choice, request.wind, ready.vehicle, edge, straight, begin, request.members, request.robust, power=power
+    )
+
+
+def unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
+    """The graph's path as it is: a shaping that shapes nothing."""
+    return points
+
+
+def _airspeeds(ready: Ready, choice: CostChoice, points: FloatArray, begin: float, worth: float) -> FloatArray | None:
+    """The airspeed of each leg where it is free: the fastest for least time alone, else of least energy and worth."""
+    request = ready.request
+    if not request.free_airspeed or request.airframe is None or ready.power is None:
+        return None
+    slowest, fastest = float(ready.power.airspeeds[0]), float(ready.power.airspeeds[-1])
+    if choice.name == "time" and math.isinf(worth):
+        return np.full(len(points) - 1, fastest)
+    value = worth if choice.name == "time" else 0.0
+    return best_airspeeds(
+        points, request.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
+    )
+
+
+def _refuse(ready: Ready, points: FloatArray, begin: float) -> NoReturn:
+    """Raise `NoRouteError` for a route (n, 3) on which the wind, looked at closely, is worse than at the nodes."""
+    request = ready.request
+    fly(points, request.frame, request.terrain, request.wind, ready.vehicle, begin)  # says on which leg, if on one
+    raise NoRouteError(
+        "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"
+        " closely: a finer graph, more airspeed, another departure, or a lower `robust`.",
+        {"wind": 1},
+    )
