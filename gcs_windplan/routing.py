@@ -18,9 +18,10 @@ from gcs_windplan.errors import NoRouteError, Problem, RequestError
 from gcs_windplan.flight import fly
 from gcs_windplan.kernels.power import PowerGrid
 from gcs_windplan.request import Request
-from gcs_windplan.search import WindyVeil, blow, find_path
+from gcs_windplan.search import WindyVeil, blow, find_open_path
 from gcs_windplan.shaping import shape
-from gcs_windplan.vehicle import Vehicle, airspeed_choices, tabulate
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
 from gcs_windplan.veil import Clearance
 
 
@@ -28,10 +29,12 @@ from gcs_windplan.veil import Clearance
 class Ready:
     """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
 
-    `power` is there where the airframe is known.
+    The winds of `request` are closed where its limits forbid them, those of `asked` are as they blow. `power` is there
+    where the airframe is known.
     """
 
     request: Request
+    asked: Request
     rules: Clearance
     sites: FloatArray
     windy: WindyVeil
@@ -110,7 +113,7 @@ def find_route(
     found = FoundRoute(ready.sites[:1], begin)
     for start, goal in pairwise(ready.sites):
         cost = cost_between(ready, choice, start, goal, found.arrival, worth)
-        path = find_path(ready.windy, cost, start, goal, found.arrival)
+        path = find_open_path(ready.windy, cost, start, goal, found.arrival)
         since = time.perf_counter()
         shaped = shaping(path.points, cost, ready.rules)
         found.shaping_seconds += time.perf_counter() - since

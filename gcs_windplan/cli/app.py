@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from gcs_windplan.cli import (
+    check,
     clear,
     compare,
     departures,
@@ -20,6 +21,7 @@ from gcs_windplan.cli import (
     pull,
     push,
     reproduce,
+    review,
     schema,
     vehicle,
     wind,
@@ -42,11 +44,13 @@ app.command("plan", help=plan.HELP, epilog=_EPILOG)(plan.plan)
 app.command("push", help=push.HELP, epilog=linking.EPILOG)(push.push)
 app.command("pull", help=pull.HELP, epilog=linking.EPILOG)(pull.pull)
 app.command("diff", help=diff.HELP, epilog=diff.EPILOG)(diff.diff)
+app.command("check", help=check.HELP, epilog=check.EPILOG)(check.check)
 app.command("clear", help=clear.HELP, epilog=linking.EPILOG)(clear.clear)
 app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
 app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
 app.command("departures", help=departures.HELP, epilog=_EPILOG)(departures.departures)
 app.command("wind", help=wind.HELP, epilog=_EPILOG)(wind.wind)
+app.command("review", help=review.HELP, epilog=review.EPILOG)(review.review)
 app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
 

@@ -10,15 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from gcs_windplan.link.kept import (
-    CENTIMETRE,
-    Fate,
-    cut_rule,
-    is_listed,
-    keeps_altitude,
-    parameter_rules,
-    same_float,
-)
 from gcs_windplan.link.wire import MissionType
 from gcs_windplan.mission import (
     Frame,
@@ -29,6 +20,16 @@ from gcs_windplan.mission import (
     plain_frame,
     scales_place,
     takes_place,
+)
+from gcs_windplan.mission.kept import (
+    CENTIMETRE,
+    Fate,
+    cut_rule,
+    float_text,
+    is_listed,
+    keeps_altitude,
+    parameter_rules,
+    same_float,
 )
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
@@ -182,7 +183,7 @@ class _Rules:
         numbers = zip(rules, _parameters(sent), _parameters(held), strict=True)
         for number, (rule, ours, theirs) in enumerate(numbers, start=1):
             if number <= count:
-                yield f"parameter {number}", _text(ours), _text(theirs), rule(ours, theirs)
+                yield f"parameter {number}", float_text(ours), float_text(theirs), rule(ours, theirs)
         if count == 4:
             yield from self._place(sent, held)
         if self.mission_type == "mission":
@@ -215,7 +216,12 @@ class _Rules:
             ("longitude", sent.longitude_deg, held.longitude_deg),
         ):
             yield name, f"{a:.7f}", f"{b:.7f}", "same" if degrees_e7(a) == degrees_e7(b) else "differs"
-        yield "altitude", _text(sent.altitude), _text(held.altitude), self._altitude(sent.altitude, held.altitude)
+        yield (
+            "altitude",
+            float_text(sent.altitude),
+            float_text(held.altitude),
+            self._altitude(sent.altitude, held.altitude),
+        )
 
     def _altitude(self, sent: float, held: float) -> Fate:
         if same_float(sent, held):
@@ -231,9 +237,3 @@ class _Rules:
 
 def _parameters(item: MissionItem) -> tuple[float, ...]:
     return (*item.params, item.latitude_deg, item.longitude_deg, item.altitude)
-
-
-def _text(number: float) -> str:
-    """The shortest decimal that is the same float of 32 bits."""
-    texts = (f"{number:.{digits}g}" for digits in range(6, 10))
-    return next((text for text in texts if same_float(float(text), number)), f"{number:.9g}")

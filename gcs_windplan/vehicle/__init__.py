@@ -13,7 +13,6 @@ from gcs_windplan.vehicle.pace import (
     takeoff_seconds,
 )
 from gcs_windplan.vehicle.power import PowerModel, best_range_airspeed, energy_per_metre, least_power_airspeed
-from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
 from gcs_windplan.vehicle.power_rotors import Multirotor, RotaryWing
 from gcs_windplan.vehicle.power_table import PowerTable
 from gcs_windplan.vehicle.power_wings import FixedWing
@@ -37,13 +36,11 @@ __all__ = [
     "Vehicle",
     "VehicleType",
     "air_density",
-    "airspeed_choices",
     "as_flown",
     "best_range_airspeed",
     "energy_per_metre",
     "landing_seconds",
     "least_power_airspeed",
     "return_seconds",
-    "tabulate",
     "takeoff_seconds",
 ]

@@ -18,7 +18,8 @@ from gcs_windplan.errors import InputError, NoRouteError
 from gcs_windplan.kernels.edges import edge_between
 from gcs_windplan.kernels.power import watts_at
 from gcs_windplan.search import blow, find_path
-from gcs_windplan.vehicle import FixedWing, Multirotor, RotaryWing, Vehicle, air_density, tabulate
+from gcs_windplan.vehicle import FixedWing, Multirotor, RotaryWing, Vehicle, air_density
+from gcs_windplan.vehicle.power_grid import tabulate
 from gcs_windplan.veil import lay_grid, lay_prm
 from gcs_windplan.wind import Calm
 from tests.oracles.powering import naive_edge_price, naive_table

@@ -15,11 +15,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.standin.items import FENCE, MISSION, RALLY, Params, Refusal, StoredItem, single
 from gcs_windplan.mission import Frame, command_name, frame_name, is_global, plain_frame
+from gcs_windplan.mission.supported import ARDUCOPTER_CAPACITY, ARDUPILOT_HIGHEST
 
 #: StorageManager.cpp, copter's layout: "On Pixhawk this gives 718 waypoints, 46 rally points and 70 fence points".
-CAPACITY = {MISSION: 718, FENCE: 70, RALLY: 46}
+CAPACITY = {MISSION: ARDUCOPTER_CAPACITY, FENCE: 70, RALLY: 46}
 
-_HIGHEST = 83_000.0  # [m] measured: |z| of this and above is refused
 _RALLY_HIGHEST = 32_767.0  # [m] AP_Rally.h keeps whole metres in 16 bits
 _Keep: TypeAlias = Callable[[float], float]
 
@@ -44,8 +44,15 @@ def _radius(number: float) -> float:
     return math.copysign(_whole(abs(number)), number)
 
 
-def _small_radius(number: float) -> float:
-    return math.copysign(_byte(abs(number)), number)
+def _turns(number: float) -> float:
+    """Whole ones up to 255; less than one in parts of 256."""
+    return int(number * 256) / 256 if 0 < number < 1 else _byte(min(number, 255.0))
+
+
+def _circle_radius(number: float) -> float:
+    """A byte of metres, or of tens of them above 255 m."""
+    radius = abs(number)
+    return math.copysign(_byte(radius) if radius <= 255 else 10 * float(min(255, int(radius * 0.1))), number)
 
 
 def _turn(number: float) -> float:
@@ -72,7 +79,7 @@ _ALL = (_as_is, _as_is, _as_is, _as_is)
 _WITH_PLACE: dict[int, tuple[_Keep, _Keep, _Keep, _Keep]] = {
     mavlink.MAV_CMD_NAV_WAYPOINT: _FIRST_WHOLE,
     mavlink.MAV_CMD_NAV_LOITER_UNLIM: (_lost, _lost, _radius, _lost),
-    mavlink.MAV_CMD_NAV_LOITER_TURNS: (_byte, _lost, _small_radius, _flag),
+    mavlink.MAV_CMD_NAV_LOITER_TURNS: (_turns, _lost, _circle_radius, _flag),
     mavlink.MAV_CMD_NAV_LOITER_TIME: (_whole, _lost, _turn, _flag),
     mavlink.MAV_CMD_NAV_LAND: (_whole, _lost, _lost, _turn),
     mavlink.MAV_CMD_NAV_TAKEOFF: _FIRST_WHOLE,
@@ -80,11 +87,12 @@ _WITH_PLACE: dict[int, tuple[_Keep, _Keep, _Keep, _Keep]] = {
     mavlink.MAV_CMD_NAV_LOITER_TO_ALT: (_lost, _radius, _lost, _flag),
     mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: _FIRST_WHOLE,
     mavlink.MAV_CMD_NAV_VTOL_TAKEOFF: _LOST,
-    mavlink.MAV_CMD_NAV_VTOL_LAND: _LOST,
+    mavlink.MAV_CMD_NAV_VTOL_LAND: _FIRST_WHOLE,
     mavlink.MAV_CMD_NAV_GUIDED_ENABLE: _FIRST_WHOLE,
     mavlink.MAV_CMD_NAV_PAYLOAD_PLACE: (_centimetres, _lost, _lost, _lost),
     mavlink.MAV_CMD_DO_SET_HOME: _FIRST_WHOLE,
     mavlink.MAV_CMD_DO_LAND_START: _LOST,
+    mavlink.MAV_CMD_DO_RETURN_PATH_START: _LOST,
     mavlink.MAV_CMD_DO_GO_AROUND: _LOST,
     mavlink.MAV_CMD_DO_SET_ROI: _FIRST_WHOLE,
     mavlink.MAV_CMD_DO_SET_ROI_LOCATION: _LOST,
@@ -127,7 +135,7 @@ _WITHOUT_PLACE: dict[int, tuple[_Keep, _Keep, _Keep, _Keep]] = {
     mavlink.MAV_CMD_DO_AUTOTUNE_ENABLE: _FIRST_WHOLE,
     mavlink.MAV_CMD_DO_SET_REVERSE: _FIRST_WHOLE,
     mavlink.MAV_CMD_DO_SET_RESUME_REPEAT_DIST: _FIRST_WHOLE,
-    mavlink.MAV_CMD_DO_ENGINE_CONTROL: (_flag, _flag, _centimetres, _lost),
+    mavlink.MAV_CMD_DO_ENGINE_CONTROL: (_flag, _flag, _centimetres, _flag),
     mavlink.MAV_CMD_DO_VTOL_TRANSITION: _FIRST,
     mavlink.MAV_CMD_DO_WINCH: _ALL,
     mavlink.MAV_CMD_IMAGE_START_CAPTURE: _ALL,
@@ -136,6 +144,7 @@ _WITHOUT_PLACE: dict[int, tuple[_Keep, _Keep, _Keep, _Keep]] = {
     mavlink.MAV_CMD_VIDEO_STOP_CAPTURE: _FIRST,
     mavlink.MAV_CMD_SET_CAMERA_ZOOM: _TWO,
     mavlink.MAV_CMD_SET_CAMERA_FOCUS: _TWO,
+    mavlink.MAV_CMD_SET_CAMERA_SOURCE: _THREE,
 }
 _ALL_SEVEN = frozenset((mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE, mavlink.MAV_CMD_DO_DIGICAM_CONTROL))
 #: Parameters that may be NaN, counted from 0 (sanity_check_params; those of waypoint and take-off measured).
@@ -220,7 +229,7 @@ def _refused_place(item: StoredItem) -> Refusal | None:
     misplaced = _misplaced(item)
     if misplaced is not None:
         return misplaced
-    if not abs(item.z) < _HIGHEST:
+    if not abs(item.z) < ARDUPILOT_HIGHEST:
         return Refusal(mavlink.MAV_MISSION_INVALID_PARAM7, f"the altitude is {item.z} m")
     if not is_global(item.frame) and item.frame != Frame.MISSION:
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED_FRAME, f"{frame_name(item.frame)} is no frame for a place")

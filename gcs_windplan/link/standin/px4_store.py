@@ -13,10 +13,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.standin.items import FENCE, MISSION, RALLY, Params, Refusal, StoredItem, single
 from gcs_windplan.mission import Command, Frame, command_name, frame_name, is_global, plain_frame, takes_place
+from gcs_windplan.mission.supported import PX4_CAPACITY, PX4_WITHOUT_PLACE
 
-#: navigation.h, NUM_MISSIONS_SUPPORTED on flight controllers: 2000 (500 in some releases); dataman.h: 64 fence
-#: points, 32 safe points.
-CAPACITY = {MISSION: 2000, FENCE: 64, RALLY: 32}
+#: dataman.h: 64 fence points, 32 safe points.
+CAPACITY = {MISSION: PX4_CAPACITY, FENCE: 64, RALLY: 32}
 
 _VERTICES = (
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
@@ -51,44 +51,6 @@ _YAW = (
     Command.NAV_VTOL_LAND,
 )
 _FLAGS: dict[int, tuple[int, ...]] = {Command.NAV_LOITER_TIME: (1, 3), Command.NAV_LOITER_TO_ALT: (0, 3)}
-_IN_MISSION_FRAME = frozenset(
-    (
-        Command.DO_JUMP,
-        Command.DO_SET_ROI,
-        Command.DO_CHANGE_SPEED,
-        Command.DO_SET_HOME,
-        Command.DO_LAND_START,
-        Command.DO_SET_CAM_TRIGG_DIST,
-        Command.DO_VTOL_TRANSITION,
-        Command.NAV_DELAY,
-        Command.NAV_RETURN_TO_LAUNCH,
-        Command.DO_SET_ROI_NONE,
-        Command.CONDITION_DELAY,
-        Command.CONDITION_DISTANCE,
-        mavlink.MAV_CMD_DO_WINCH,
-        mavlink.MAV_CMD_DO_GRIPPER,
-        mavlink.MAV_CMD_DO_TRIGGER_CONTROL,
-        mavlink.MAV_CMD_DO_DIGICAM_CONTROL,
-        mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
-        mavlink.MAV_CMD_DO_MOUNT_CONTROL,
-        mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
-        mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
-        mavlink.MAV_CMD_IMAGE_START_CAPTURE,
-        mavlink.MAV_CMD_IMAGE_STOP_CAPTURE,
-        mavlink.MAV_CMD_VIDEO_START_CAPTURE,
-        mavlink.MAV_CMD_VIDEO_STOP_CAPTURE,
-        mavlink.MAV_CMD_DO_CONTROL_VIDEO,
-        mavlink.MAV_CMD_OBLIQUE_SURVEY,
-        mavlink.MAV_CMD_DO_SET_CAM_TRIGG_INTERVAL,
-        mavlink.MAV_CMD_SET_CAMERA_MODE,
-        mavlink.MAV_CMD_SET_CAMERA_FOCUS,
-        mavlink.MAV_CMD_SET_CAMERA_SOURCE,
-        mavlink.MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET,
-        mavlink.MAV_CMD_DO_SET_ACTUATOR,
-        mavlink.MAV_CMD_DO_AUTOTUNE_ENABLE,
-        mavlink.MAV_CMD_COMPONENT_ARM_DISARM,
-    )
-)
 _GLOBAL_FRAMES = {Frame.GLOBAL: Frame.GLOBAL_INT, Frame.GLOBAL_RELATIVE_ALT: Frame.GLOBAL_RELATIVE_ALT_INT}
 
 
@@ -108,9 +70,8 @@ def keep(item: StoredItem, mission_type: int) -> StoredItem | Refusal:
 
 def infeasible(items: Sequence[StoredItem]) -> str | None:
     """Why PX4 would not fly a mission that it took, or None."""
-    first = next((item for item in items if _is_position(item)), None)
-    takeoffs = (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF)
-    if first is not None and first.command not in takeoffs and any(item.command in takeoffs for item in items):
+    positions = [item.command for item in items if _is_position(item)]
+    if any(command in (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF) for command in positions[1:]):
         return "takeoff is not the first waypoint item"
     for seq, item in enumerate(items):
         if item.has_place and not math.isfinite(item.z):
@@ -123,7 +84,7 @@ def infeasible(items: Sequence[StoredItem]) -> str | None:
 def _keep_place(item: StoredItem, frame: Frame) -> StoredItem | Refusal:
     kept = _IN_GLOBAL_FRAME.get(item.command)
     if kept is None:
-        where = "only without a place" if item.command in _IN_MISSION_FRAME else "not"
+        where = "only without a place" if item.command in PX4_WITHOUT_PLACE else "not"
         return Refusal(mavlink.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is {where} supported")
     if item.command == Command.DO_SET_ROI and int(_finite(item.params[0])) not in (0, 3):  # none, a location
         return Refusal(mavlink.MAV_MISSION_INVALID_PARAM1, "this region of interest takes no place")
@@ -138,7 +99,7 @@ def _keep_place(item: StoredItem, frame: Frame) -> StoredItem | Refusal:
 
 
 def _keep_without_place(item: StoredItem) -> StoredItem | Refusal:
-    if item.command not in _IN_MISSION_FRAME:
+    if item.command not in PX4_WITHOUT_PLACE:
         return Refusal(
             mavlink.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is not supported without a place"
         )

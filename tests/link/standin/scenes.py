@@ -34,7 +34,7 @@ wind: {{constant: {{speed: 6 m/s, from: 250 deg}}}}
 start: {{east: -900, north: 0}}
 goal: {{east: 900, north: 50}}
 clearance: 30 m
-max_height: 120 m
+limits: {{max_height: 120 m}}
 graph: {{uniform: {{spacing: 50 m}}}}
 """
 

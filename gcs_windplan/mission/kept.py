@@ -5,10 +5,11 @@ ArduPilot's mission protocol, and PX4's mavlink_mission.cpp (parse and format); 
 jumps were measured too. A command's parameters are written as a letter each; those not written are not kept:
 
     f  as a float of 32 bits     i  as a whole number, cut     c  in hundredths, cut
+    w  whole, 0 to 65535         u  whole, 0 to 255            n  whole, -32768 to 32767
+    g  whole, 65535 either way   q  whole, at most 255         a  as an altitude in hundredths, with its frame
     y  as a yaw, modulo 360°     s  its sign only, as 1 or -1  b  1 if above zero, else 0
-    h  as a float of 16 bits     a  as an altitude in hundredths, with its frame
     t  turns of a circle         r  a circle's radius          l  the yaw of a landing
-    x  as a yaw or as b          -  not kept
+    x  as a yaw or as b          h  as a float of 16 bits      -  not kept
 
 A place (parameters 5 to 7 of a command that takes one) has rules of its own. Of a command that is not listed every
 parameter counts: nobody knows what is kept of it.
@@ -23,7 +24,7 @@ from typing import Literal, TypeAlias
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.mission import Command
+from gcs_windplan.mission.commands import Command
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 Fate: TypeAlias = Literal["same", "trifle", "lost", "differs"]
@@ -38,36 +39,37 @@ _YAW = 1e-3  # [deg] of a float of 32 bits in radians
 _TURN = 1 / 256  # ArduPilot's parts of a turn
 _SMALL_RADIUS = 255.0  # [m] ArduPilot keeps the radius of turns in metres up to here, in steps of 10 m above
 _LARGE_STEP = 10.0  # [m]
+BYTE = 255  # AP_Mission.cpp: the most that half of an item's p1 holds
 
 _ARDUPILOT: dict[int, str] = {
-    Command.NAV_WAYPOINT: "i---",
-    Command.NAV_LOITER_UNLIM: "--i-",
+    Command.NAV_WAYPOINT: "w---",
+    Command.NAV_LOITER_UNLIM: "--g-",
     Command.NAV_LOITER_TURNS: "t-rb",
-    Command.NAV_LOITER_TIME: "i-sb",
+    Command.NAV_LOITER_TIME: "w-sb",
     Command.NAV_RETURN_TO_LAUNCH: "----",
-    Command.NAV_LAND: "i--l",
-    Command.NAV_TAKEOFF: "i---",
-    Command.NAV_CONTINUE_AND_CHANGE_ALT: "i---iia",
-    Command.NAV_LOITER_TO_ALT: "-i-b",
-    Command.NAV_SPLINE_WAYPOINT: "i---",
-    Command.NAV_DELAY: "fiii",
+    Command.NAV_LAND: "w--l",
+    Command.NAV_TAKEOFF: "w---",
+    Command.NAV_CONTINUE_AND_CHANGE_ALT: "w---iia",
+    Command.NAV_LOITER_TO_ALT: "-g-b",
+    Command.NAV_SPLINE_WAYPOINT: "w---",
+    Command.NAV_DELAY: "fnnn",
     Command.NAV_PAYLOAD_PLACE: "c---",
     Command.NAV_VTOL_TAKEOFF: "----",
-    Command.NAV_VTOL_LAND: "i---",
+    Command.NAV_VTOL_LAND: "w---",
     Command.CONDITION_DELAY: "f---",
     Command.CONDITION_DISTANCE: "f---",
-    Command.CONDITION_YAW: "ffii",
-    Command.DO_JUMP: "ii--",
-    Command.DO_CHANGE_SPEED: "iff-",
-    Command.DO_SET_HOME: "i---",
+    Command.CONDITION_YAW: "ffnu",
+    Command.DO_JUMP: "wn--",
+    Command.DO_CHANGE_SPEED: "uff-",
+    Command.DO_SET_HOME: "w---",
     Command.DO_LAND_START: "----",
     Command.DO_SET_ROI_LOCATION: "----",
     Command.DO_SET_ROI_NONE: "----",
-    Command.DO_SET_ROI: "i---",
+    Command.DO_SET_ROI: "w---",
     Command.DO_SET_CAM_TRIGG_DIST: "f-i-",
     Command.DO_VTOL_TRANSITION: "i---",
-    Command.JUMP_TAG: "i---",
-    Command.DO_JUMP_TAG: "ii--",
+    Command.JUMP_TAG: "w---",
+    Command.DO_JUMP_TAG: "wn--",
     Command.NAV_FENCE_RETURN_POINT: "----",
     Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION: "i---",
     Command.NAV_FENCE_POLYGON_VERTEX_EXCLUSION: "i---",
@@ -75,32 +77,32 @@ _ARDUPILOT: dict[int, str] = {
     Command.NAV_FENCE_CIRCLE_EXCLUSION: "f---",
     Command.NAV_RALLY_POINT: "----",
     mavlink.MAV_CMD_NAV_ALTITUDE_WAIT: "ffi-",
-    mavlink.MAV_CMD_NAV_GUIDED_ENABLE: "i---iia",
+    mavlink.MAV_CMD_NAV_GUIDED_ENABLE: "w---iia",
     mavlink.MAV_CMD_NAV_SET_YAW_SPEED: "ffi-",
     mavlink.MAV_CMD_NAV_SCRIPT_TIME: "iihhii-",
     mavlink.MAV_CMD_NAV_ATTITUDE_TIME: "iiiif--",
-    mavlink.MAV_CMD_DO_SET_MODE: "i---",
-    mavlink.MAV_CMD_DO_SET_RELAY: "ii--",
-    mavlink.MAV_CMD_DO_REPEAT_RELAY: "iif-",
-    mavlink.MAV_CMD_DO_SET_SERVO: "ii--",
-    mavlink.MAV_CMD_DO_REPEAT_SERVO: "iiif",
+    mavlink.MAV_CMD_DO_SET_MODE: "w---",
+    mavlink.MAV_CMD_DO_SET_RELAY: "uu--",
+    mavlink.MAV_CMD_DO_REPEAT_RELAY: "unf-",
+    mavlink.MAV_CMD_DO_SET_SERVO: "uw--",
+    mavlink.MAV_CMD_DO_REPEAT_SERVO: "uwnf",
     mavlink.MAV_CMD_DO_RETURN_PATH_START: "----",
     mavlink.MAV_CMD_DO_GO_AROUND: "----iia",
-    mavlink.MAV_CMD_DO_PAUSE_CONTINUE: "i---",
-    mavlink.MAV_CMD_DO_SET_REVERSE: "i---",
+    mavlink.MAV_CMD_DO_PAUSE_CONTINUE: "w---",
+    mavlink.MAV_CMD_DO_SET_REVERSE: "w---",
     mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE: "iiiiiif",
     mavlink.MAV_CMD_DO_DIGICAM_CONTROL: "iiiiii-",
     mavlink.MAV_CMD_DO_MOUNT_CONTROL: "fff-",
-    mavlink.MAV_CMD_DO_FENCE_ENABLE: "i---",
-    mavlink.MAV_CMD_DO_PARACHUTE: "i---",
-    mavlink.MAV_CMD_DO_INVERTED_FLIGHT: "i---",
-    mavlink.MAV_CMD_DO_GRIPPER: "ii--",
-    mavlink.MAV_CMD_DO_AUTOTUNE_ENABLE: "i---",
-    mavlink.MAV_CMD_DO_SET_RESUME_REPEAT_DIST: "i---",
-    mavlink.MAV_CMD_DO_SPRAYER: "i---",
+    mavlink.MAV_CMD_DO_FENCE_ENABLE: "w---",
+    mavlink.MAV_CMD_DO_PARACHUTE: "w---",
+    mavlink.MAV_CMD_DO_INVERTED_FLIGHT: "w---",
+    mavlink.MAV_CMD_DO_GRIPPER: "uu--",
+    mavlink.MAV_CMD_DO_AUTOTUNE_ENABLE: "w---",
+    mavlink.MAV_CMD_DO_SET_RESUME_REPEAT_DIST: "w---",
+    mavlink.MAV_CMD_DO_SPRAYER: "w---",
     mavlink.MAV_CMD_DO_SEND_SCRIPT_MESSAGE: "ifff",
-    mavlink.MAV_CMD_DO_AUX_FUNCTION: "ii--",
-    mavlink.MAV_CMD_DO_GUIDED_LIMITS: "ifff",
+    mavlink.MAV_CMD_DO_AUX_FUNCTION: "wu--",
+    mavlink.MAV_CMD_DO_GUIDED_LIMITS: "wfff",
     mavlink.MAV_CMD_DO_ENGINE_CONTROL: "bbcb",
     mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW: "iiiii-i",
     mavlink.MAV_CMD_IMAGE_START_CAPTURE: "ifii",
@@ -112,7 +114,7 @@ _ARDUPILOT: dict[int, str] = {
     mavlink.MAV_CMD_SET_CAMERA_SOURCE: "iii-",
     mavlink.MAV_CMD_DO_WINCH: "iiff",
 }
-_ARDUPLANE = {**_ARDUPILOT, Command.NAV_WAYPOINT: "-ii-"}
+_ARDUPLANE = {**_ARDUPILOT, Command.NAV_WAYPOINT: "-qq-"}
 _PX4: dict[int, str] = {
     Command.NAV_WAYPOINT: "ff-y",
     Command.NAV_LOITER_UNLIM: "--fy",
@@ -122,6 +124,7 @@ _PX4: dict[int, str] = {
     Command.NAV_LOITER_TO_ALT: "bf-b",
     Command.NAV_VTOL_TAKEOFF: "---y",
     Command.NAV_VTOL_LAND: "---y",
+    Command.DO_JUMP: "iifffff",
     Command.DO_SET_ROI_LOCATION: "----",
     Command.NAV_FENCE_RETURN_POINT: "----",
     Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION: "i---",
@@ -129,6 +132,7 @@ _PX4: dict[int, str] = {
     Command.NAV_FENCE_CIRCLE_INCLUSION: "f---",
     Command.NAV_FENCE_CIRCLE_EXCLUSION: "f---",
     Command.NAV_RALLY_POINT: "----",
+    mavlink.MAV_CMD_CONDITION_GATE: "----",
 }
 _LISTS: dict[Autopilot | None, dict[int, str]] = {"ardupilot": _ARDUPILOT, "px4": _PX4}
 _EXACT = "fffffff"
@@ -136,7 +140,7 @@ _EXACT = "fffffff"
 
 def parameter_rules(command: int, autopilot: Autopilot | None, vehicle_type: VehicleType | None) -> tuple[Rule, ...]:
     """The rules of a command's seven parameters; an autopilot of None keeps all as floats of 32 bits."""
-    return tuple(_RULES[letter] for letter in _letters(command, autopilot, vehicle_type))
+    return tuple(_RULES[letter] for letter in parameter_letters(command, autopilot, vehicle_type))
 
 
 def is_listed(command: int, autopilot: Autopilot | None) -> bool:
@@ -146,10 +150,11 @@ def is_listed(command: int, autopilot: Autopilot | None) -> bool:
 
 def keeps_altitude(command: int, autopilot: Autopilot | None) -> bool:
     """Whether the firmware keeps an altitude and its frame with a command that takes no place."""
-    return _letters(command, autopilot, None).endswith("a")
+    return parameter_letters(command, autopilot, None).endswith("a")
 
 
-def _letters(command: int, autopilot: Autopilot | None, vehicle_type: VehicleType | None) -> str:
+def parameter_letters(command: int, autopilot: Autopilot | None, vehicle_type: VehicleType | None) -> str:
+    """The letters of a command's seven parameters."""
     plane = autopilot == "ardupilot" and vehicle_type == "fixed-wing"
     letters = (_ARDUPLANE if plane else _LISTS.get(autopilot, {})).get(command, _EXACT)
     return letters.ljust(len(_EXACT), "-")
@@ -190,6 +195,11 @@ def _rule_whole(sent: float, held: float) -> Fate:
     if same_float(sent, held):
         return "same"
     return "lost" if math.isfinite(sent) and held == math.trunc(sent) else "differs"
+
+
+def _rule_capped(sent: float, held: float) -> Fate:
+    fate = _rule_whole(sent, held)
+    return "lost" if fate == "differs" and held == BYTE < sent else fate
 
 
 def _rule_dropped(sent: float, held: float) -> Fate:
@@ -238,7 +248,8 @@ def _rule_yaw_or_above_zero(sent: float, held: float) -> Fate:
 _RULES: dict[str, Rule] = {
     "f": _rule_float,
     "h": _rule_half,
-    "i": _rule_whole,
+    **dict.fromkeys("iwung", _rule_whole),
+    "q": _rule_capped,
     "c": cut_rule(CENTIMETRE),
     "a": _rule_altitude,
     "y": _rule_yaw,
@@ -252,7 +263,7 @@ _RULES: dict[str, Rule] = {
 }
 
 
-def _single(number: float) -> float:
+def single(number: float) -> float:
     """The number as a float of 32 bits; one too large for it is infinite."""
     try:
         return float(struct.unpack("<f", struct.pack("<f", number))[0])
@@ -267,4 +278,10 @@ def _float_step(number: float) -> float:
 
 def same_float(one: float, other: float) -> bool:
     """Whether both are the same float of 32 bits, or both NaN."""
-    return (math.isnan(one) and math.isnan(other)) or _single(one) == _single(other)
+    return (math.isnan(one) and math.isnan(other)) or single(one) == single(other)
+
+
+def float_text(number: float) -> str:
+    """The shortest decimal that is the same float of 32 bits."""
+    texts = (f"{number:.{digits}g}" for digits in range(6, 10))
+    return next((text for text in texts if same_float(float(text), number)), f"{number:.9g}")
