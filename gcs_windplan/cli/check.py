@@ -22,10 +22,11 @@ its default parameters: terrain and wind do not come into it. The firmware is wh
 and --vehicle-type do. Items count from 1; home is 0.
 """
 EPILOG = (
-    "Exit codes: 0 nothing found; 1 something found (or no route exists, of a mission file to be planned); "
+    "Exit codes: 0 nothing found but roundings of places below a centimetre; 1 something found (or no route exists, of a mission file to be planned); "
     "2 something handed in cannot be used."
 )
 _PLANNED = (".yaml", ".yml")
+_FINER_THAN_FLOWN = ("altitude-rounded", "place-rounded")
 _EFFECTS = "rejected, dropped, rounded, changed or ignored"
 
 
@@ -51,8 +52,13 @@ def check(
         _print_json(file, firmware, len(read.mission.items), findings, notes)
     else:
         _print(file, firmware, len(read.mission.items), findings)
-    if findings:
+    if _counts_as_found(findings):
         raise typer.Exit(1)
+
+
+def _counts_as_found(findings: tuple[FirmwareFinding, ...]) -> bool:
+    """Whether more was found than places that are kept to a centimetre, which no vehicle flies."""
+    return any(finding.rule not in _FINER_THAN_FLOWN for finding in findings)
 
 
 def _read(file: Path) -> ReadMission:
@@ -127,6 +133,6 @@ def _print_json(
             for found in findings
         ],
         "notes": notes,
-        "exit_code": 1 if findings else 0,
+        "exit_code": 1 if _counts_as_found(findings) else 0,
     }
     typer.echo(json.dumps(document, indent=2, ensure_ascii=False))

@@ -2,7 +2,8 @@
 
 ArduCopter flies every AUTO leg at one ground speed, the parameter's or the last commanded one, whatever the
 wind (measured in its simulator: 10 m/s commanded, 9.98 m/s in still air and in 5 m/s of tail wind). A plan
-that uses the wind must therefore command each leg's ground speed, with a DO_CHANGE_SPEED before it.
+that uses the wind must therefore command each leg's ground speed, with a DO_CHANGE_SPEED before it. A fixed-wing holds
+an airspeed, and so that is what it is told.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ _SPEED_STEP = 0.1  # [m/s] smaller changes are not commanded
 _SAME_PLACE = 1.0  # [m] half of ArduCopter's default waypoint radius (WPNAV_RADIUS)
 _FIXED_WING_PITCH = 15.0  # [deg] least pitch in a fixed-wing take-off, as in ArduPilot's own test missions
 _NEARLY_ZERO = 0.02  # [m] survives ArduPilot's truncation to centimetres
-_GROUND_SPEED = 1.0  # MAVLink SPEED_TYPE_GROUNDSPEED
+_AIRSPEED, _GROUND_SPEED = 0.0, 1.0  # MAVLink SPEED_TYPE_AIRSPEED, SPEED_TYPE_GROUNDSPEED
 _SAME_THROTTLE = -1.0  # MAVLink: no change
 
 
@@ -35,19 +36,21 @@ _SAME_THROTTLE = -1.0  # MAVLink: no change
 class RoutePoint:
     """A point of a planned route; `altitude` AMSL [m].
 
-    `ground_speed` is the planned horizontal ground speed [m/s] of the leg that ends here; None for the first
-    point, and where none is to be commanded.
+    `ground_speed` is the planned horizontal ground speed [m/s] of the leg that ends here, `airspeed` what a fixed-wing is
+    to hold on it; None for the first point, and where none is to be commanded.
     """
 
     point: GeoPoint
     altitude: float
     ground_speed: float | None = None
+    airspeed: float | None = None
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.altitude):
             raise InputError(f"the altitude {self.altitude} of the route point {self.point} is not finite")
-        if self.ground_speed is not None and not 0.01 <= self.ground_speed < math.inf:
-            raise InputError(f"the ground speed {self.ground_speed} m/s to {self.point} is not at least 0.01 m/s")
+        for name, speed in (("ground speed", self.ground_speed), ("airspeed", self.airspeed)):
+            if speed is not None and not 0.01 <= speed < math.inf:
+                raise InputError(f"the {name} {speed} m/s to {self.point} is not at least 0.01 m/s")
 
 
 def route_mission(
@@ -65,7 +68,7 @@ def route_mission(
     """The mission that takes off at home, flies the route and finishes by landing, returning or holding.
 
     `landing_altitude` is the ground's height AMSL [m] at the last point, needed to land there. `cruise_speed`
-    [m/s] is only noted for ground stations. With `speed_changes` the ground speed of each leg is commanded
+    [m/s] is only noted for ground stations. With `speed_changes` the speed of each leg is commanded
     before it, as long as it differs by 0.1 m/s or more from the last one commanded. Raises InputError where
     route and wishes contradict.
     """
@@ -127,11 +130,12 @@ def _legs(writer: _ItemWriter, route: Sequence[RoutePoint], speed_changes: bool)
         yield writer.waypoint(route[0])
     commanded = -math.inf
     for target in route[1:]:
-        if speed_changes and target.ground_speed is not None:
-            speed = round(target.ground_speed, 2)
+        kind, told = (_GROUND_SPEED, target.ground_speed) if target.airspeed is None else (_AIRSPEED, target.airspeed)
+        if speed_changes and told is not None:
+            speed = round(told, 2)
             if abs(speed - commanded) >= _SPEED_STEP - 1e-9:
                 commanded = speed
-                yield writer.without_place(Command.DO_CHANGE_SPEED, (_GROUND_SPEED, speed, _SAME_THROTTLE, 0.0))
+                yield writer.without_place(Command.DO_CHANGE_SPEED, (kind, speed, _SAME_THROTTLE, 0.0))
         yield writer.waypoint(target)
 
 

@@ -41,19 +41,16 @@ def flown_duration(plan: Plan) -> MissionDuration | None:
 def mission_of(plan: Plan) -> Mission:
     """The mission that flies a plan: home on the ground under its first waypoint, speeds as planned.
 
-    A leg straight up or down commands no ground speed. Fence and rally points of the request come with it; rally
+    A leg straight up or down commands no speed; a fixed-wing is told airspeeds. Fence and rally points of the request come with it; rally
     points are given above home, which every version of every autopilot takes.
     """
     first, last = plan.waypoints[0], plan.waypoints[-1]
-    speeds = [
-        None,
-        *(leg.ground_speed if leg.distance >= _LEVEL and leg.ground_speed >= _SLOWEST else None for leg in plan.legs),
-    ]
-    route = [
-        RoutePoint(waypoint.point, waypoint.altitude, speed)
-        for waypoint, speed in zip(plan.waypoints, speeds, strict=True)
-    ]
     request = plan.request
+    route = [RoutePoint(first.point, first.altitude)]
+    for leg, waypoint in zip(plan.legs, plan.waypoints[1:], strict=True):
+        moves = leg.distance >= _LEVEL and leg.ground_speed >= _SLOWEST
+        airspeed = None if request.vehicle.hovers else leg.airspeed
+        route.append(RoutePoint(waypoint.point, waypoint.altitude, leg.ground_speed if moves else None, airspeed))
     home = Home(first.point, first.altitude - first.above_ground)
     mission = route_mission(
         home,

@@ -7,6 +7,7 @@ from dataclasses import replace
 import gcs_windplan as gw
 from gcs_windplan.cli.tables import flown_line
 from gcs_windplan.flight import clock
+from gcs_windplan.mission import Command
 from gcs_windplan.mission.planned import flown_duration
 from gcs_windplan.wind import Calm
 from tests.ensembles import Everywhere, request
@@ -36,3 +37,12 @@ def test_of_a_fixed_wing_it_is_not_known():
 def test_px4_is_told_with_less_certainty():
     plan = gw.plan_route(request(wind=Calm(), vehicle=replace(gw.Vehicle(10.0), autopilot="px4")))
     assert "PX4 may fly" in flown_line(plan)
+
+
+def test_a_fixed_wing_is_told_the_airspeed_that_it_holds():
+    plan = gw.plan_route(request(wind=Everywhere(5.0), vehicle=gw.Vehicle(15.0, type="fixed-wing")))
+    told = [item.params for item in gw.mission_of(plan).items if item.command == Command.DO_CHANGE_SPEED]
+    assert told == [(0.0, 15.0, -1.0, 0.0)]
+    hovering = gw.plan_route(request(wind=Everywhere(5.0), vehicle=gw.Vehicle(15.0)))
+    told = [item.params for item in gw.mission_of(hovering).items if item.command == Command.DO_CHANGE_SPEED]
+    assert told == [(1.0, 20.0, -1.0, 0.0)]
