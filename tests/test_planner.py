@@ -15,6 +15,7 @@ import gcs_windplan as gw
 from gcs_windplan.cost import COST_NAMES
 from gcs_windplan.errors import RequestError
 from gcs_windplan.request import Request, Roadmap, Site, Uniform
+from gcs_windplan.spec.airframe import read_airframe
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.veil import Airspace, Prism
@@ -44,9 +45,10 @@ def smallest_height(dem: Dem, plan) -> float:
 
 @pytest.mark.parametrize("graph", [Uniform(60.0, 8), Uniform(60.0, 32), Roadmap(nodes=600, seed=2), Roadmap()])
 @pytest.mark.parametrize("cost", COST_NAMES)
-def test_a_route_keeps_every_limit(graph, cost):
+def test_a_route_keeps_every_limit(graph, cost, gallery):
     dem = rough_dem(4, relief=70.0)
-    asked = request(dem, wind=WavyWind(4), graph=graph, cost=gw.CostChoice(cost))
+    airframe = read_airframe(gallery / "vehicles" / "large_multirotor.yaml") if cost == "energy" else None
+    asked = request(dem, wind=WavyWind(4), graph=graph, cost=gw.CostChoice(cost), airframe=airframe)
     plan = gw.plan_route(asked)
     assert plan.totals.clearance >= 25.0 - 1e-6
     assert plan.totals.height <= 110.0 + 1e-6
@@ -149,8 +151,8 @@ def test_same_request_same_plan():
         ({"start": Site("start", -5000.0, 0.0)}, "start", "4.00 km outside of the terrain"),
         ({"goal": Site("goal", 0.0, 0.0, altitude=-20.0)}, "goal", "below the ground"),
         ({"goal": Site("goal", 0.0, 0.0, above_ground=10.0)}, "goal", "less than the clearance"),
-        ({"start": Site("start", 0.0, 0.0, above_ground=300.0)}, "start", "more than max_height"),
-        ({"clearance": 200.0}, "clearance", "more than max_height"),
+        ({"start": Site("start", 0.0, 0.0, above_ground=300.0)}, "start", "above limits.max_height"),
+        ({"clearance": 200.0}, "clearance", "more than limits.max_height"),
         ({"layers": (10.0, 80.0)}, "graph.layers.0", "not between clearance"),
     ],
 )

@@ -30,7 +30,7 @@ def test_the_mission_shown_is_the_mission_shipped():
 def test_the_figures_shown_are_the_programs():
     """Within what rounding on another processor may change: vertices settle a little elsewhere."""
     request = gw.read_mission(ROOT / "missions" / "jacksboro.yaml")
-    plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES])
+    plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES if name != "energy"])
     shown = re.search(r"^jacksboro, least time: (\d+) waypoints, ([\d.]+) km, (\d+):(\d\d) min", README, re.MULTILINE)
     assert shown is not None
     by_time = plans[-1]

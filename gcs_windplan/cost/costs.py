@@ -79,7 +79,8 @@ class LegCost:
     the member at the `quantile` from the cheapest up; `wind` is then their mean. Along a leg
     the wind is looked at `finer` times as closely as its resolution asks for. With a `power` a leg costs its energy and
     what its time is worth [J], at the best of the airspeeds there; `energy` needs it, and `time` may have it: then
-    least time is weighed against energy.
+    least time is weighed against energy. `corner` [s] is what slowing down at a waypoint takes the vehicle; legs do not
+    cost it, but shaping drops waypoints that are not worth it.
     """
 
     choice: CostChoice
@@ -92,6 +93,7 @@ class LegCost:
     quantile: float = 0.5
     finer: float = 1.0
     power: PowerGrid | None = None
+    corner: float = 0.0
 
     def __post_init__(self) -> None:
         if self.choice.name == "energy" and self.power is None:
@@ -120,6 +122,13 @@ class LegCost:
     def changing(self) -> bool:
         """Whether the wind changes with time."""
         return len(self.wind.times) > 1
+
+    @property
+    def toll(self) -> float:
+        """What a waypoint takes, in the cost's own unit; nothing where that is no matter of time."""
+        if self.power is not None:
+            return self.corner * float(np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.worth)
+        return self.corner if self.choice.name == "time" else 0.0
 
     def least_in(self, seconds: float) -> float:
         """What a way that lasts so long [s] costs at least."""

@@ -15,11 +15,14 @@ from gcs_windplan.cost import COST_NAMES, CostChoice, LegCost
 from gcs_windplan.search import blow, find_path
 from gcs_windplan.shaping import relax, shape, shorten, thin
 from gcs_windplan.terrain import Dem, Extent
-from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle import Multirotor, Vehicle
+from gcs_windplan.vehicle.power_grid import tabulate
 from gcs_windplan.veil import Clearance, lay_grid
 from gcs_windplan.wind import Calm
 from gcs_windplan.wind.field import Steady
 from tests.worlds import AREA, WavyWind, over_ground, rough_dem
+
+QUADCOPTER = Multirotor(4.21, 0.99545857, 100.0, 2.06852797, 0.02745631, 0.01473469, 1.172)
 
 
 @settings(max_examples=12, deadline=None)
@@ -29,7 +32,9 @@ def test_never_worse_than_the_graph_and_always_clear(seed, name, strength):
     rules = Clearance(dem, 25.0, 110.0)
     veil = lay_grid(rules, AREA, 90.0, (40.0, 80.0), 16)
     wind = WavyWind(seed, strength=strength)
-    cost = LegCost(CostChoice(name), wind, Vehicle(12.0), veil.edge_length, 2000.0)
+    vehicle = Vehicle(12.0)
+    power = tabulate(QUADCOPTER, vehicle, np.array([8.0, 12.0, 16.0]), (0.0, 300.0)) if name == "energy" else None
+    cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0, power=power)
     path = find_path(blow(veil, wind), cost, over_ground(dem, -800, -700, 40), over_ground(dem, 750, 800, 60)).points
     limit = cost.of_polyline(path)
     for shaped in (shorten(path, cost, rules), shape(path, cost, rules)):
