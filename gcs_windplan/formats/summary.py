@@ -33,6 +33,7 @@ def format_summary(plan: Plan) -> str:
         "totals": asdict(plan.totals),
         "ensemble": _ensemble(plan),
         "battery": _battery(plan),
+        "ways_home": _ways_home(plan),
         "as_flown": _as_flown(plan),
         "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
         "legs": [asdict(leg) for leg in plan.legs],
@@ -72,6 +73,19 @@ def _battery(plan: Plan) -> dict[str, Any] | None:
         return None
     total = use.total if math.isfinite(use.total) else None
     return {"total": total, "usable": use.usable, "allowed_with_reserve": use.allowed, "left": list(use.left)}
+
+
+def _ways_home(plan: Plan) -> dict[str, Any] | None:
+    """What flying home, or to the nearest rally point, takes from each waypoint [J], null where there is no way; and
+    where home comes out of reach with the reserve. None without an airframe."""
+    ways = plan.ways_home
+    if ways is None:
+        return None
+    home, rally = (
+        [joules if math.isfinite(joules) else None for joules in one] for one in (ways.energies, ways.diversions)
+    )
+    lost = None if ways.no_return is None else asdict(ways.no_return)
+    return {"home": home, "rally": rally if plan.request.rally else None, "point_of_no_return": lost}
 
 
 def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:
