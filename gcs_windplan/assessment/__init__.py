@@ -14,9 +14,13 @@ from gcs_windplan.assessment.assessment import (
     Sums,
     Verdict,
 )
+from gcs_windplan.assessment.case import Case
+from gcs_windplan.assessment.judge import assess
+from gcs_windplan.assessment.planned import assess_plan, case_of
 
 __all__ = [
     "Assessment",
+    "Case",
     "Finding",
     "GroundMap",
     "JudgedLeg",
@@ -28,4 +32,7 @@ __all__ = [
     "Stop",
     "Sums",
     "Verdict",
+    "assess",
+    "assess_plan",
+    "case_of",
 ]

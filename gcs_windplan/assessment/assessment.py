@@ -20,9 +20,9 @@ class Finding:
     """One thing that is wrong with a mission.
 
     `rule` is a stable short name (`clearance`, `height`, `wind`, `reserve`, ...), `message` one sentence with the
-    number, the limit and what to do. Where it is: the mission's `item` (from 1 on, home being 0), the `leg` (from 1 on),
-    how far along the route (`distance`, level [m]) and the place; None where it concerns the whole mission. `value` and
-    `limit` are in `unit`.
+    number, the limit and what to do. Where it is: the mission's `item` (from 1 on, home being 0), the `leg` (from 1
+    on), how far along the route (`distance`, level [m]) and the place; None where it concerns the whole mission.
+    `value` and `limit` are in `unit`.
     """
 
     rule: str
@@ -100,7 +100,8 @@ class Profile:
 
     `distance` level along the route [m], `seconds` since take-off, heights above mean sea level [m]; wind positive from
     behind and from left to right, speeds [m/s]. `power` [W] and `left`, the battery's share, where the airframe is
-    known. `leg` is the number of the leg that a sample lies on (0: the take-off's climb). NaN where something is not known.
+    known. `leg` is the number of the leg that a sample lies on (0: the take-off's climb). NaN where something is not
+    known.
     """
 
     distance: FloatArray
@@ -158,8 +159,8 @@ class Outline:
 class Limits:
     """What a mission is judged against; None: no such limit. Heights above ground and lengths [m], speeds [m/s].
 
-    `battery` is the smallest share of the capacity that must be left at the end, `first_leg` the largest distance from
-    home to the first waypoint [m].
+    `battery` is the smallest share of the capacity that must be left at the end, `reserve_seconds` of level flight must
+    be left besides what is not usable, `first_leg` is the largest distance from home to the first waypoint [m].
     """
 
     clearance: float | None = None
@@ -171,11 +172,12 @@ class Limits:
     descent: float | None = None
     airspeed: float | None = None
     first_leg: float | None = None
+    reserve_seconds: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Something that the judgement rests on: `role` is `mission`, `terrain`, `wind` or `vehicle`.
+    """Something that the judgement rests on: `role` is `mission`, `terrain`, `wind`, `vehicle`, `limits` or `software`.
 
     `file` and its `sha256` where it is one; `detail` in words: the vertical datum, the forecast's run, what was
     assumed.

@@ -26,7 +26,6 @@ EPILOG = (
     "2 something handed in cannot be used."
 )
 _PLANNED = (".yaml", ".yml")
-_FINER_THAN_FLOWN = ("altitude-rounded", "place-rounded")
 _EFFECTS = "rejected, dropped, rounded, changed or ignored"
 
 
@@ -58,7 +57,9 @@ def check(
 
 def _counts_as_found(findings: tuple[FirmwareFinding, ...]) -> bool:
     """Whether more was found than places that are kept to a centimetre, which no vehicle flies."""
-    return any(finding.rule not in _FINER_THAN_FLOWN for finding in findings)
+    from gcs_windplan.mission.lint import FINER_THAN_FLOWN
+
+    return any(finding.rule not in FINER_THAN_FLOWN for finding in findings)
 
 
 def _read(file: Path) -> ReadMission:

@@ -14,11 +14,11 @@ from gcs_windplan.flight import clock
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
-_WIDTH = 110  # where the output is no terminal
+_WIDTH = 120  # where the output is no terminal
 
 
 def make_console() -> Console:
-    """The terminal, or 110 columns where there is none."""
+    """The terminal, or 120 columns where there is none."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
 
@@ -48,7 +48,7 @@ def print_legs(plan: Plan) -> None:
 def _power_columns(plan: Plan) -> list[str]:
     """What the table says of airspeeds and the battery, where that is known."""
     free = ["air m/s"] if plan.request.free_airspeed else []
-    return free + (["battery %", "home Wh"] if plan.battery and plan.ways_home else [])
+    return free + (["left %", "home Wh"] if plan.battery and plan.ways_home else [])
 
 
 def _power_cells(plan: Plan) -> list[list[str]]:
@@ -86,6 +86,7 @@ def summary_lines(plan: Plan) -> list[str]:
         *_way_home(plan),
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
         f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
+        *_strongest(plan),
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
         f" {effort.search_seconds:.2f} s, {effort.vertices} vertices shaped in {effort.shaping_seconds:.2f} s",
     ]
@@ -122,6 +123,22 @@ def _energy(plan: Plan) -> list[str]:
         f"{line}; {watt_hours(use.total)} Wh with take-off{' and landing' * (plan.request.finish == 'land')}, of"
         f" {watt_hours(use.usable)} usable Wh{over} ({airframe.name})"
     ]
+
+
+def _strongest(plan: Plan) -> list[str]:
+    """The strongest wind and gust met, where they have limits."""
+    met, limits = plan.strongest, plan.request.limits
+    if met is None:
+        return []
+    members = len(met.winds)
+    where = f" in any of the {members} members" if members > 1 else ""
+    known = [("wind", met.wind, limits.wind)] + ([] if met.gust is None else [("gust", met.gust, limits.gust)])
+    told = [
+        f"{name} {speed:.1f} m/s" + (f" (limits.{name} {limit:g} m/s)" if limit is not None else "")
+        for name, speed, limit in known
+    ]
+    kept = f"; {met.keeping(limits)} of {members} keep the limits" if members > 1 else ""
+    return [f"strongest{where}: {', '.join(told)}{kept}"]
 
 
 def _way_home(plan: Plan) -> list[str]:
@@ -204,7 +221,7 @@ def _gain(plans: Sequence[Plan]) -> list[str]:
 
 
 def mean_height(plan: Plan, sign: int) -> float | None:
-    """The mean height above ground [m] of the legs with the wind from behind (1) or from ahead (-1), by their length."""
+    """The mean height above ground [m], by length, of the legs with the wind from behind (1) or from ahead (-1)."""
     legs = [leg for leg in plan.legs if leg.wind_along * sign > 0 and leg.distance > 0]
     total = sum(leg.distance for leg in legs)
     return sum(leg.distance * (leg.clearance + leg.height) / 2 for leg in legs) / total if total else None

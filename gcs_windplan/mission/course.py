@@ -38,6 +38,13 @@ _ONLY_REACHED = {
     Command.NAV_LOITER_TURNS: "is flown to; its circles are not counted",
     Command.NAV_PAYLOAD_PLACE: "is flown to; its descent is not counted",
 }
+#: Items that a fixed-wing circles at, and which of their parameters is the radius.
+_CIRCLES: Final = {
+    Command.NAV_LOITER_TURNS: 2,
+    Command.NAV_LOITER_TIME: 2,
+    Command.NAV_LOITER_UNLIM: 2,
+    Command.NAV_LOITER_TO_ALT: 1,
+}
 _LABELS: Final = {Command.NAV_WAYPOINT: "waypoint", Command.NAV_SPLINE_WAYPOINT: "spline"}
 
 
@@ -56,9 +63,10 @@ class Move:
     """A straight piece of a mission as flown, or a wait in place.
 
     `item` counts the mission's items from 1, home being 0. `start` and `end` are east, north in the course's frame and
-    height AMSL [m]; a return's end is home. It begins at rest where `rests`, and waits at its end for `hold` [s], or
-    for as long as `circling` metres take. `follows`: its height above ground changes evenly, not that above the sea.
-    `label` is what lies at its end: `take-off`, `waypoint`, `spline`, `loiter`, `wait`, `land`, `return`.
+    height AMSL [m]; a return's end is home. It begins at rest where `rests`, and waits at its end for `hold` [s]; a
+    fixed-wing circles there on `radius` [m] for as long as `circling` metres take. `follows`: its height above ground
+    changes evenly, not that above the sea. `label` is what lies at its end: `take-off`, `waypoint`, `spline`, `loiter`,
+    `wait`, `land`, `return`.
     """
 
     item: int
@@ -69,6 +77,7 @@ class Move:
     told: Told = Told()
     hold: float = 0.0
     circling: float = 0.0
+    radius: float = 0.0
     rests: bool = True
     follows: bool = False
 
@@ -163,11 +172,11 @@ class _Walk:
 
     def _leg(
         self, number: int, label: str, end: Place, *, hold: float = 0.0, passed: bool = False, passing: bool = False,
-        circling: float = 0.0, follows: bool = False,
+        circle: tuple[float, float] = (0.0, 0.0), follows: bool = False,
     ) -> None:  # fmt: skip
         """A leg; `passed` says whether the place that it begins at may be passed, `passing` its end."""
         rests = not (passed and self.passing)
-        self._move(Move(number, "leg", label, self.place, end, self.told, hold, circling, rests, follows))
+        self._move(Move(number, "leg", label, self.place, end, self.told, hold, *circle, rests, follows))
         self.passing = passing and hold == 0
 
     def _go(self, number: int, item: MissionItem) -> None:
@@ -176,7 +185,6 @@ class _Walk:
         if self.landed:
             self.remark(f"there is no take-off before item {number}; one straight up is counted")
             self._lift(number, max(end[2], self.place[2]))
-        circling = self._circling(item)
         if command in _ONLY_REACHED and not (self.winged and command == Command.NAV_LOITER_TURNS):
             self.remark(f"item {number}, {command_name(command)}, {_ONLY_REACHED[command]}")
         holds = command in (Command.NAV_WAYPOINT, Command.NAV_LOITER_TIME) and item.params[0] > 0
@@ -189,17 +197,19 @@ class _Walk:
             hold=item.params[0] if holds else 0.0,
             passed=command in _LEGS,
             passing=command in _PASSED,
-            circling=circling,
+            circle=self._circle(item),
             follows=self.ground is not None and plain_frame(item.frame) == Frame.GLOBAL_TERRAIN_ALT,
         )
         self.over = command == Command.NAV_LOITER_UNLIM
 
-    def _circling(self, item: MissionItem) -> float:
-        """How far a fixed-wing flies in circles at an item [m]."""
-        turns, radius = item.params[0], item.params[2]
-        if not (self.winged and item.command == Command.NAV_LOITER_TURNS and turns > 0):
-            return 0.0
-        return turns * _FULL_CIRCLE * (abs(radius) if abs(radius) > 0 else _RADIUS)
+    def _circle(self, item: MissionItem) -> tuple[float, float]:
+        """How far a fixed-wing flies in circles at an item whose number it names [m], and their radius [m]."""
+        if not self.winged or item.command not in _CIRCLES:
+            return 0.0, 0.0
+        named = abs(item.params[_CIRCLES[Command(item.command)]])
+        radius = named if named > 0 else _RADIUS
+        turns = item.params[0] if item.command == Command.NAV_LOITER_TURNS else 0.0
+        return max(turns, 0.0) * _FULL_CIRCLE * radius, radius
 
     def _lift(self, number: int, altitude: float) -> None:
         east, north, _ = self.place

@@ -148,6 +148,7 @@ def test_the_gallery_is_whole():
         "keep_out",
         "inspection",
         "front",
+        "rounds",
     }
     assert isinstance(gw.mission_of(planned(MISSIONS[0])), Mission)
 

@@ -16,6 +16,9 @@ meaning. Ignored: an item that is held and never carried out. Warned: flown, wit
 
 EFFECTS: tuple[Effect, ...] = ("rejected", "dropped", "rounded", "changed", "ignored", "warned")
 
+#: Rules whose numbers change by less than a centimetre, which no vehicle flies: to be told, and nothing to mend.
+FINER_THAN_FLOWN = frozenset(("altitude-rounded", "place-rounded"))
+
 _NAMES: dict[tuple[Autopilot, VehicleType | None], str] = {
     ("ardupilot", "multicopter"): "ArduCopter",
     ("ardupilot", "fixed-wing"): "ArduPlane",

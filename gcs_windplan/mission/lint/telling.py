@@ -12,10 +12,12 @@ _SHOWN = 2  # numbers of a group
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """One line, and the effect that it tells of."""
+    """One line, the effect and the rule that it tells of, and the first item that it strikes."""
 
     effect: Effect
     line: str
+    rule: str
+    item: int | None
 
 
 def told(findings: Sequence[FirmwareFinding]) -> tuple[Told, ...]:
@@ -24,7 +26,7 @@ def told(findings: Sequence[FirmwareFinding]) -> tuple[Told, ...]:
     for finding in findings:
         key = finding.rule, finding.effect, finding.fact, finding.advice
         groups.setdefault(key, []).append(finding)
-    lines = [Told(group[0].effect, _line(group)) for group in groups.values()]
+    lines = [Told(group[0].effect, _line(group), group[0].rule, group[0].item) for group in groups.values()]
     return tuple(sorted(lines, key=lambda line: EFFECTS.index(line.effect)))
 
 

@@ -1,0 +1,65 @@
+"""Where a mission begins, if it does not say so itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from gcs_windplan.assessment.case import Case
+from gcs_windplan.errors import InputError
+from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.mission import Home, Mission
+
+APART: Final = 5.0  # [m] more, and home is not on this terrain's ground
+
+
+def with_home(case: Case) -> Case:
+    """The case with a home: the mission's, or on the ground under the first place that it names.
+
+    A home at exactly 0 m where the ground is elsewhere is a blank, as ground stations write: the ground counts. Raises
+    `InputError` where there is none, or no item with a place.
+    """
+    home = case.mission.home
+    if home is None:
+        home = _assumed(case)
+        said = f"the mission names no home: it is taken to be at {home.point}, {home.altitude:.1f} m, on the ground"
+        return _at(case, home, f"{said} under its first place")
+    ground = ground_at(home.point, case)
+    if home.altitude == 0 and abs(ground) > APART and not case.home_is_given:
+        return _at(
+            case,
+            replace(home, altitude=ground),
+            f"home's altitude is a blank 0 m: heights above home count from the ground there, {ground:.1f} m",
+        )
+    return case
+
+
+def ground_at(point: GeoPoint, case: Case) -> float:
+    """The ground's height at a place [m], NaN where it is not known."""
+    places = case.frame.to_local(point.latitude_deg, point.longitude_deg)
+    return float(case.terrain.heights_at(np.ascontiguousarray(places))[0])
+
+
+def first_place(mission: Mission) -> GeoPoint | None:
+    """The first place that a mission names."""
+    return next((GeoPoint(item.latitude_deg, item.longitude_deg) for item in mission.items if item.has_place), None)
+
+
+def _assumed(case: Case) -> Home:
+    point = first_place(case.mission)
+    if point is None:
+        raise InputError("the mission names neither home nor any place: give home")
+    ground = ground_at(point, case)
+    if math.isnan(ground):
+        raise InputError(
+            f"the mission names no home, and its first place, {point}, lies outside of the terrain: give home's"
+            " latitude, longitude and altitude, or another terrain"
+        )
+    return Home(point, ground)
+
+
+def _at(case: Case, home: Home, remark: str) -> Case:
+    return replace(case, mission=replace(case.mission, home=home), remarks=(*case.remarks, remark))

@@ -1,0 +1,70 @@
+"""A plan as a case: its mission judged by its own request."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+from gcs_windplan.assessment.assessment import Assessment, Limits, Source
+from gcs_windplan.assessment.case import Case
+from gcs_windplan.assessment.judge import assess
+from gcs_windplan.mission import Mission
+from gcs_windplan.mission.duration import pace_of
+from gcs_windplan.mission.planned import mission_of
+from gcs_windplan.planner import Plan
+from gcs_windplan.request import Request
+from gcs_windplan.vehicle import Pace
+
+_FASTEST: Final = 1000.0  # [m/s] no limit
+
+
+def assess_plan(plan: Plan, sources: Sequence[Source] = ()) -> Assessment:
+    """Judge the mission that flies a plan, by the terrain, wind, vehicle and limits of its request."""
+    return assess(replace(case_of(plan.request, mission_of(plan), sources), remarks=plan.notes))
+
+
+def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) -> Case:
+    """Any mission in a request's world and by its limits; the autopilot and vehicle are the request's."""
+    vehicle, airframe = request.vehicle, request.airframe
+    mission = replace(mission, autopilot=vehicle.autopilot, vehicle_type=vehicle.type)
+    return Case(
+        name=request.name,
+        mission=mission,
+        frame=request.frame,
+        terrain=request.terrain,
+        wind=request.wind,
+        autopilot=vehicle.autopilot,
+        vehicle_type=vehicle.type,
+        pace=pace_for(request),
+        cruise=vehicle.airspeed,
+        limits=limits_of(request),
+        airframe=airframe,
+        gusts=request.gusts,
+        airspace=request.airspace,
+        obstacles=request.obstacles,
+        departure=request.departure,
+        sources=tuple(sources),
+    )
+
+
+def pace_for(request: Request) -> Pace:
+    """The autopilot's pace with the request's return height, and the airframe's largest airspeed where it is known."""
+    fastest = _FASTEST if request.airframe is None else request.airframe.maximum_airspeed
+    return replace(pace_of(request.vehicle.autopilot), airspeed=fastest, return_height=request.return_height)
+
+
+def limits_of(request: Request) -> Limits:
+    """The request's limits, and what its vehicle can do."""
+    vehicle, airframe = request.vehicle, request.airframe
+    return Limits(
+        clearance=request.clearance,
+        max_height=request.max_height,
+        wind=request.limits.wind,
+        gust=request.limits.gust,
+        battery=request.limits.battery,
+        reserve_seconds=request.limits.reserve_seconds,
+        climb=vehicle.climb,
+        descent=vehicle.descent,
+        airspeed=None if airframe is None else airframe.maximum_airspeed,
+    )

@@ -1,0 +1,93 @@
+"""Rules of what the vehicle can do: make way against the wind, hold the speed commanded, climb as steeply as asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.assessment.figures import Judged
+from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg
+
+_SLACK = 0.02  # [m/s] what rounding of commanded speeds may have added
+_WORTH_SAYING = 0.5  # [m/s] by which a commanded speed is missed
+
+
+def flyable(mission: Judged) -> Iterator[Found]:
+    """Legs on which the wind stops the vehicle."""
+    flown, case = mission.flown, mission.case
+    first = flown.samples.first
+    for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
+        if not flown.stopped[move]:
+            continue
+        part = slice(int(first[move]), int(first[move + 1]))
+        blowing = np.hypot(*flown.wind.filled[part, :2].T)
+        stopped = np.flatnonzero(flown.motion.stopped[part])
+        worst = int(stopped[np.argmax(blowing[stopped])]) if len(stopped) else int(np.argmax(blowing))
+        yield on_leg(
+            mission, leg, "flyable", "danger",
+            f"{leg_name(leg)} cannot be flown: in wind of {blowing[worst]:.1f} m/s the vehicle makes no way at"
+            f" {case.fastest:g} m/s through the air: another departure, or a faster vehicle",
+            at=flown.samples.places[part][worst], value=float(blowing[worst]), limit=case.fastest, unit="m/s",
+        )  # fmt: skip
+
+
+def airspeed(mission: Judged) -> Iterator[Found]:
+    """Legs whose commanded speed takes more airspeed than there is."""
+    case, flown = mission.case, mission.flown
+    first = flown.samples.first
+    for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
+        if flown.stopped[move] or not leg.distance:
+            continue
+        part = slice(int(first[move]), int(first[move + 1]))
+        needed = _needed(mission, int(move), part)
+        worst = int(np.argmax(needed))
+        if needed[worst] > case.fastest + _WORTH_SAYING:
+            held = "slower there" if case.hovers else "held back there"
+            yield on_leg(
+                mission, leg, "airspeed", "warning",
+                f"{leg_name(leg)} takes {needed[worst]:.1f} m/s through the air to keep its speed, and the vehicle"
+                f" reaches {case.fastest:.1f} m/s: it is {held} and arrives later; command less, or fly in less wind",
+                at=flown.samples.places[part][worst], value=float(needed[worst]), limit=case.fastest, unit="m/s",
+            )  # fmt: skip
+
+
+def gradient(mission: Judged) -> Iterator[Found]:
+    """Legs that climb or descend faster than the vehicle can."""
+    case, flown = mission.case, mission.flown
+    for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
+        limit = case.limits.climb if leg.climb > 0 else case.limits.descent
+        moving = float(flown.moving[move])
+        if limit is None or flown.stopped[move] or moving <= 0 or leg.distance <= 0:
+            continue
+        rate = abs(leg.climb) / moving
+        if rate <= limit + _SLACK:
+            continue
+        up = "climbs" if leg.climb > 0 else "descends"
+        way = abs(leg.climb) / limit * leg.ground_speed
+        late = "the autopilot waits for the height" if case.hovers else "it arrives at another height"
+        yield on_leg(
+            mission, leg, "gradient", "warning" if case.hovers else "danger",
+            f"{leg_name(leg)} {up} {abs(leg.climb):.0f} m on {leg.distance:.0f} m, {rate:.1f} m/s at its speed, and the"
+            f" vehicle does {limit:g} m/s: {late}; give it {way:.0f} m of way, or circle",
+            value=rate, limit=limit, unit="m/s",
+        )  # fmt: skip
+
+
+def _needed(mission: Judged, move: int, part: slice) -> FloatArray:
+    """The airspeed that the commanded speed takes at a move's samples [m/s]."""
+    case, motion = mission.case, mission.flown.motion
+    if not case.hovers:
+        return np.asarray(motion.needed[part])
+    told = mission.track.moves[move].told
+    wanted = case.pace.speed if told.ground is None else told.ground
+    direction = mission.flown.samples.direction[part]
+    level = np.hypot(direction[:, 0], direction[:, 1])
+    rising = np.abs(direction[:, 2])
+    up = case.pace.climb if told.climb is None else told.climb
+    down = case.pace.descent if told.descent is None else told.descent
+    rate = np.where(direction[:, 2] > 0, up, down)
+    with np.errstate(divide="ignore"):
+        ground = np.minimum(wanted, np.where(rising > 1e-9, rate / rising, np.inf) * level)
+    return np.asarray(np.hypot(ground - motion.along[part], motion.across[part]))

@@ -1,0 +1,178 @@
+"""`gcs-windplan review`: any mission judged against terrain and wind, as one page and an exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final, Literal
+
+import typer
+
+from gcs_windplan.cli.linking import Json, answering
+
+if TYPE_CHECKING:
+    from gcs_windplan.assessment import Assessment
+    from gcs_windplan.cli.review_world import Options
+
+HELP = """Judge a mission against terrain, wind and limits; write one HTML page for offline use; print what is wrong.
+
+A mission file (.yaml) is planned and judged in its own world. For a .plan or .waypoints say the world with --terrain,
+--wind, --vehicle, or take that of a mission file: --by MISSION.yaml. Two missions are compared.
+"""
+EPILOG = "Exit codes: 0 nothing found; 1 findings, or no route exists; 2 something handed in cannot be used."
+_MISSION_FILES: Final = (".yaml", ".yml")
+_EXPORTS: Final = ("kml", "geojson", "csv", "png")
+
+
+def review(
+    mission: Annotated[Path, typer.Argument(metavar="MISSION", help="A .plan, a .waypoints, or a mission file.")],
+    other: Annotated[Path | None, typer.Argument(metavar="OTHER", help="Another one, to compare.")] = None,
+    terrain: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="Heights: GeoTIFF, .hgt; several by repeating; sample:jacksboro, flat:120."),
+    ] = None,
+    wind: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="Forecast: GRIB, NetCDF, JSON; or '8 m/s from 270'. Default still air."),
+    ] = None,
+    profile: Annotated[
+        str | None,
+        typer.Option(metavar="LAW", help="How the wind changes with height: power:0.143 or log:0.1 (roughness in m)."),
+    ] = None,
+    extend: Annotated[
+        Literal["nearest"] | None, typer.Option(help="Outside the forecast's area take the nearest values.")
+    ] = None,
+    departure: Annotated[str | None, typer.Option(metavar="TIME", help="When it takes off: 2026-05-01T08:00Z.")] = None,
+    vehicle: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An airframe file; without one energy is not known.")
+    ] = None,
+    autopilot: Annotated[Literal["ardupilot", "px4"] | None, typer.Option(help="In place of the mission's.")] = None,
+    vehicle_type: Annotated[
+        Literal["multicopter", "fixed-wing"] | None, typer.Option(help="In place of the mission's.")
+    ] = None,
+    home: Annotated[
+        str | None, typer.Option(metavar="LAT,LON[,ALT]", help="In place of the mission's; without ALT on the ground.")
+    ] = None,
+    by: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MISSION.yaml", help="Judge by this mission file's terrain, wind, vehicle, limits, areas."
+        ),
+    ] = None,
+    clearance: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Least height above ground; default 30 m, or the file's.")
+    ] = None,
+    max_height: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Largest height above ground: 120, '400 ft'.")
+    ] = None,
+    max_wind: Annotated[str | None, typer.Option(metavar="SPEED", help="Strongest wind: 10, '20 kt'.")] = None,
+    max_gust: Annotated[str | None, typer.Option(metavar="SPEED", help="Strongest gust, of a forecast.")] = None,
+    min_battery: Annotated[
+        str | None, typer.Option(metavar="SHARE", help="What must be left at the end: '30 %', 0.3.")
+    ] = None,
+    first_leg: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="How far the first place may be from home; default 500 m.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="The page; default out/NAME/review.html.")
+    ] = None,
+    also: Annotated[
+        str | None, typer.Option(metavar="kml,geojson,csv,png", help="Write these beside the page, by the same name.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Judge, write, print."""
+    from gcs_windplan.cli.review_world import Options
+
+    options = Options(
+        tuple(terrain or ()), tuple(wind or ()), profile, extend, departure, vehicle, autopilot, vehicle_type, home,
+        clearance, max_height, max_wind, max_gust, min_battery, first_leg,
+    )  # fmt: skip
+    with answering("review", as_json):
+        wanted = _exports(also)
+        assessments = _judge([mission] if other is None else [mission, other], by, options)
+        written = _write(assessments, output, wanted)
+    code = 1 if any(assessment.findings for assessment in assessments) else 0
+    if as_json:
+        from gcs_windplan.formats.verdict import format_verdict
+
+        typer.echo(format_verdict(assessments, written, code))
+    else:
+        _print(assessments, written)
+    if code:
+        raise typer.Exit(code)
+
+
+def _judge(files: Sequence[Path], by: Path | None, options: Options) -> list[Assessment]:
+    """Both missions judged; one that is read beside a mission file in that one's world."""
+    from gcs_windplan.cli.review_inputs import assessment_of
+
+    planned = (file for file in files if file.suffix.lower() in _MISSION_FILES)
+    world = by if by is not None else next(planned, None)
+    return [assessment_of(file, world, options) for file in files]
+
+
+def _exports(also: str | None) -> tuple[str, ...]:
+    """The formats that are written beside the page."""
+    from gcs_windplan.errors import InputError, Problem
+
+    wanted = tuple(dict.fromkeys(part.strip().lower() for part in (also or "").split(",") if part.strip()))
+    unknown = [name for name in wanted if name not in _EXPORTS]
+    if unknown:
+        raise InputError(Problem(f"{unknown[0]!r} is none of {', '.join(_EXPORTS)}", "--also"))
+    return wanted
+
+
+def _write(assessments: Sequence[Assessment], output: Path | None, wanted: Sequence[str]) -> list[Path]:
+    """Write the page and what is wanted beside it, all or nothing."""
+    from gcs_windplan.cli.plan import write
+    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.review.page import render_page
+
+    page = output if output is not None else _default(assessments)
+    if page.is_dir():
+        page = page / "review.html"
+    files: dict[str, str | bytes] = {page.name: render_page(assessments)}
+    for number, assessment in enumerate(assessments, start=1):
+        stem = page.stem if len(assessments) == 1 else f"{page.stem}-{number}"
+        files.update(_beside(assessment, stem, wanted))
+    if "png" in wanted:
+        from gcs_windplan.review import draw_assessment_map
+
+        files[f"{page.stem}.map.png"] = draw_assessment_map(assessments)
+    try:
+        page.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(Problem(f"the folder cannot be made ({error.strerror})", file=page.parent)) from None
+    return write(files, page.parent)
+
+
+def _beside(assessment: Assessment, stem: str, wanted: Sequence[str]) -> dict[str, str | bytes]:
+    """The files of one mission that are wanted beside the page, by name."""
+    from gcs_windplan.formats.geojson import format_geojson
+    from gcs_windplan.formats.kml import format_kml
+    from gcs_windplan.formats.legs_csv import format_legs_csv
+
+    texts = {"kml": format_kml, "geojson": format_geojson, "csv": format_legs_csv}
+    files: dict[str, str | bytes] = {f"{stem}.{kind}": texts[kind](assessment) for kind in wanted if kind in texts}
+    if "png" in wanted:
+        from gcs_windplan.review import draw_assessment_profile
+
+        files[f"{stem}.profile.png"] = draw_assessment_profile(assessment)
+    return files
+
+
+def _default(assessments: Sequence[Assessment]) -> Path:
+    """Where the page goes if nobody says."""
+    name = "_and_".join(dict.fromkeys(one.name.strip().lower().replace(" ", "_") for one in assessments))
+    return Path("out") / name / "review.html"
+
+
+def _print(assessments: Sequence[Assessment], written: Sequence[Path]) -> None:
+    from gcs_windplan.cli.review_words import lines
+
+    for assessment in assessments:
+        for line in lines(assessment):
+            typer.echo(line)
+    for path in written:
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,85 @@
+"""Judged missions as PNG."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gcs_windplan.review import draw_assessment_map, draw_assessment_profile
+from gcs_windplan.review.relief import Ground, contour_step, shade
+from tests.review import made
+
+
+def pixels(png: bytes) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"))
+
+
+def has_colour(png: bytes, colour: tuple[int, int, int]) -> bool:
+    return bool((np.abs(pixels(png).astype(int) - colour).sum(axis=2) < 8).any())
+
+
+DANGER, WARNING = (0xB8, 0x49, 0x0A), (0xFF, 0xC9, 0x4D)
+
+
+@pytest.mark.parametrize("draw", [lambda one: draw_assessment_map([one]), draw_assessment_profile])
+def test_findings_are_marked(draw) -> None:
+    found, clear = draw(made.assessment()), draw(replace(made.assessment(), findings=()))
+    assert has_colour(found, DANGER)
+    assert has_colour(found, WARNING)
+    assert not has_colour(clear, DANGER)
+
+
+def test_pictures_are_the_same_for_the_same_input() -> None:
+    assert draw_assessment_map([made.assessment()]) == draw_assessment_map([made.assessment()])
+    assert draw_assessment_profile(made.assessment()) == draw_assessment_profile(made.assessment())
+
+
+def test_two_missions_lie_on_one_map() -> None:
+    drawn = draw_assessment_map([made.assessment("a"), made.assessment("b", shift=300.0)])
+    assert has_colour(drawn, (0x00, 0x72, 0xB2))
+    assert has_colour(drawn, (0xD5, 0x5E, 0x00))
+
+
+def test_what_is_not_known_is_left_out() -> None:
+    mission = made.clear()
+    blank = np.full_like(mission.profile.distance, np.nan)
+    profile = replace(mission.profile, ground=blank, wind_along=blank)
+    unknown = replace(mission, profile=profile)
+    assert len(pixels(draw_assessment_profile(unknown)))
+    nowhere = {name: getattr(mission.profile, name) for name in mission.profile.__slots__}
+    nowhere = {name: None if values is None else values[:0] for name, values in nowhere.items()}
+    empty = replace(mission, profile=type(mission.profile)(**nowhere), legs=(), stops=())
+    assert len(pixels(draw_assessment_profile(empty)))
+    assert len(pixels(draw_assessment_map([empty])))
+
+
+def test_slopes_towards_the_light_are_bright_and_unknown_ground_is_clear() -> None:
+    x, y = np.meshgrid(np.linspace(-1000, 1000, 80), np.linspace(-1000, 1000, 80))
+    heights = 300 - 0.3 * np.hypot(x, y)  # a cone
+    heights[0, 0] = np.nan
+    colours = shade(Ground(-1000, -1000, 1000, 1000, heights), lines=False)
+    north_west, south_east = colours[60, 20, :3].sum(), colours[20, 60, :3].sum()
+    assert north_west > 1.2 * south_east
+    assert colours[0, 0, 3] == 0
+    assert colours[5, 5, 3] == 1
+
+
+@pytest.mark.parametrize(("relief", "step"), [(0, 1), (12, 1), (200, 20), (600, 50), (3000, 250)])
+def test_contour_lines_are_neither_many_nor_few(relief: float, step: int) -> None:
+    assert contour_step(relief) == step
+
+
+def test_a_picture_of_the_ground_keeps_its_edges_and_gaps() -> None:
+    heights = np.add.outer(np.arange(40.0), np.arange(60.0))
+    heights[10:20, 10:20] = np.nan
+    ground = Ground(0, 0, 590, 390, heights)
+    finer = ground.resampled(240)
+    assert finer.heights.shape == (159, 240)
+    assert np.isnan(finer.heights).mean() == pytest.approx(100 / 2400, rel=0.05)
+    one_metre = 1.0
+    assert np.nanmin(finer.heights) == pytest.approx(0, abs=one_metre)
+    assert np.nanmax(finer.heights) == pytest.approx(98, abs=one_metre)
