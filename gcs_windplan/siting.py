@@ -157,6 +157,9 @@ def _return_blocked(
     problems = []
     if not heights[0] >= rules.minimum - _SLACK:
         problems.append(Problem(_low_return(way, levels, heights[0], rules.minimum), field))
+    elif heights[1] > rules.maximum + _SLACK:
+        text = f"the straight flight {way} at {levels[1]:.0f} m above sea level rises to {heights[1]:.1f} m above ground"
+        problems.append(Problem(f"{text}, more than limits.max_height: lower the goal, or land there", field))
     if broken := rules.airspace.broken_by(away, back):
         problems.append(Problem(f"the straight flight {way} breaks '{broken[0]}': land at the goal instead", field))
     obstacles = rules.obstacles
@@ -179,10 +182,11 @@ def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
         problems.append(Problem(text, "vehicle.type"))
     limit = math.inf if request.max_height is None else request.max_height
     if request.clearance > limit:
-        problems.append(Problem(f"{request.clearance:g} m is more than max_height, {limit:g} m: lower it", "clearance"))
+        text = f"{request.clearance:g} m is more than limits.max_height, {limit:g} m: lower it"
+        problems.append(Problem(text, "clearance"))
     for i, layer in enumerate(layers):
         if not request.clearance - _SLACK <= layer <= limit + _SLACK:
-            text = f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and max_height"
+            text = f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and limits.max_height"
             problems.append(Problem(f"{text} ({limit:g} m)", f"graph.layers.{i}"))
     return problems
 
@@ -208,7 +212,7 @@ def _misplaced(site: Site, point: FloatArray, request: Request, rules: Clearance
     if above < rules.minimum - _SLACK:
         return f"is {above:.1f} m above ground, less than the clearance of {rules.minimum:g} m: raise it or lower that"
     if above > rules.maximum + _SLACK:
-        return f"is {above:.1f} m above ground, more than max_height, {rules.maximum:g} m: lower it or raise that"
+        return f"is {above:.1f} m above ground, above limits.max_height, {rules.maximum:g} m: lower it or raise that"
     broken = rules.airspace.broken_by(point, point)
     if broken:
         return f"lies where '{broken[0]}' forbids it: move the site, or correct the area or its floor and ceiling"

@@ -268,3 +268,13 @@ def test_public_names():
         "CostChoice", "GeoPoint", "InputError", "LocalFrame", "NoRouteError", "Plan", "Request", "Vehicle",
         "WindplanError", "mission_of", "plan_route", "plan_routes", "read_mission",
     }  # fmt: skip
+
+
+def test_a_return_above_the_height_limit_is_refused():
+    """Home on a hill of 150 m, the goal in the plain: the flight back is 190 m above the plain."""
+    heights = np.zeros((41, 41))
+    heights[20, 5] = 100.0
+    dem = Dem.local(heights, -1000.0, 1000.0, 50.0)
+    start, goal = Site("start", -750.0, 0.0), Site("goal", 700.0, 0.0)
+    with pytest.raises(RequestError, match=r"rises to \d+\.\d m above ground, more than limits.max_height"):
+        gw.plan_route(request(dem, start=start, goal=goal, finish="return", return_height=40.0))

@@ -143,7 +143,7 @@ class GroundMap:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outline:
-    """An area on the map: `kind` is `keep-out`, `keep-in`, `fence-out` or `fence-in`; corners (n, 2) in the frame [m].
+    """On the map: `kind` is `keep-out`, `keep-in`, `fence-out`, `fence-in` or `obstacle`; corners (n, 2) in the frame.
 
     `floor` and `ceiling` above mean sea level [m], None where it has none.
     """

@@ -1,8 +1,9 @@
-"""The areas that a mission must keep to, in the local frame: those of the case, and the mission's own fence."""
+"""What a mission must keep to or away from, in the local frame: areas, obstacles, and the mission's own fence."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -12,6 +13,7 @@ from gcs_windplan.assessment.assessment import Outline
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.mission import FencePolygon
+from gcs_windplan.terrain import Obstacle
 from gcs_windplan.veil import Prism
 
 _SIDES: Final = 180  # of a circle
@@ -22,6 +24,8 @@ def outlines_of(case: Case) -> tuple[Outline, ...]:
     """All areas, for maps and for judging."""
     outlines = [_of_prism(prism, "keep-out") for prism in case.airspace.keep_out]
     outlines += [_of_prism(prism, "keep-in") for prism in case.airspace.keep_in]
+    if case.obstacles is not None:
+        outlines += [outline for obstacle in case.obstacles.items for outline in _of_obstacle(obstacle)]
     fence = case.mission.fence
     if fence is None:
         return tuple(outlines)
@@ -43,6 +47,17 @@ def _of_prism(prism: Prism, kind: str) -> Outline:
     floor = prism.floor if math.isfinite(prism.floor) else None
     ceiling = prism.ceiling if math.isfinite(prism.ceiling) else None
     return Outline(prism.name, kind, prism.corners, floor, ceiling)
+
+
+def _of_obstacle(obstacle: Obstacle) -> Iterator[Outline]:
+    """The hulls of an obstacle's bodies seen from above, from foot to top."""
+    import trimesh  # here, since most missions have no obstacles
+    from scipy.spatial import ConvexHull
+
+    for body in trimesh.Trimesh(obstacle.vertices, obstacle.faces).split(only_watertight=False):
+        places = np.asarray(body.vertices)
+        hull = places[ConvexHull(places[:, :2]).vertices, :2]
+        yield Outline(obstacle.name, "obstacle", hull, float(places[:, 2].min()), float(places[:, 2].max()))
 
 
 def _ring(radius: float, outer: bool) -> FloatArray:

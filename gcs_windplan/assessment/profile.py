@@ -20,6 +20,7 @@ _NODES: Final = 300  # of the ground's longer side
 _ARROWS: Final = 15
 _MARGIN: Final = 0.15  # of the route's longer side
 _LEAST_MARGIN: Final = 150.0  # [m]
+_NARROWEST: Final = 0.6  # of the longer side, the shorter one of the map
 
 
 def profile_of(mission: Judged) -> Profile:
@@ -109,6 +110,8 @@ def ground_map_of(mission: Judged) -> GroundMap:
     size = float(np.ptp(corners, axis=0).max())
     margin = max(_MARGIN * size, _LEAST_MARGIN)
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
+    lacking = np.maximum(_NARROWEST * float((high - low).max()) - (high - low), 0.0) / 2
+    low, high = low - lacking, high + lacking
     cell = max(float((high - low).max()) / (_NODES - 1), case.terrain.resolution / 4)
     east, north = (np.linspace(low[i], high[i], math.ceil((high[i] - low[i]) / cell) + 1)[:_NODES] for i in (0, 1))
     grid = np.meshgrid(east, north)

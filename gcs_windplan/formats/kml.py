@@ -28,6 +28,7 @@ _COLOURS: Final = {  # alpha, blue, green, red
     "fence-out": "803030d0",
     "keep-in": "8030a030",
     "fence-in": "8030a030",
+    "obstacle": "b05e3a5b",
 }
 _TALL: Final = 300.0  # [m] above the highest point of the flight, where an area has no ceiling
 

@@ -31,7 +31,7 @@ def draw_assessment_map(assessments: Sequence[Assessment], dpi: int = 120) -> by
     figure, axes, beside = sheet.sheet(extent)
     sheet.draw_relief(axes, ground.resampled(_PIXELS, smooth=True))
     for outline in first.outlines:
-        if outline.kind.endswith("out"):
+        if outline.kind.endswith("out") or outline.kind == "obstacle":
             floor, ceiling = (np.nan if height is None else height for height in (outline.floor, outline.ceiling))
             sheet.draw_keep_out(axes, outline.corners, outline.name, floor, ceiling)
         else:

@@ -11,7 +11,8 @@ from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg
 
 _SLACK = 0.02  # [m/s] what rounding of commanded speeds may have added
-_WORTH_SAYING = 0.5  # [m/s] by which a commanded speed is missed
+_WORTH_SAYING = 0.05  # of the largest airspeed, by which a commanded speed misses it: 5 % of a leg's time at most
+_PASSED = 2.0  # [m] a shorter leg ends within the waypoint's radius (ArduCopter's default of WPNAV_RADIUS)
 
 
 def flyable(mission: Judged) -> Iterator[Found]:
@@ -38,12 +39,12 @@ def airspeed(mission: Judged) -> Iterator[Found]:
     case, flown = mission.case, mission.flown
     first = flown.samples.first
     for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
-        if flown.stopped[move] or not leg.distance:
+        if flown.stopped[move] or leg.distance < _PASSED:
             continue
         part = slice(int(first[move]), int(first[move + 1]))
         needed = _needed(mission, int(move), part)
         worst = int(np.argmax(needed))
-        if needed[worst] > case.fastest + _WORTH_SAYING:
+        if needed[worst] > case.fastest * (1 + _WORTH_SAYING):
             held = "slower there" if case.hovers else "held back there"
             yield on_leg(
                 mission, leg, "airspeed", "warning",
