@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ AIRFRAMES = ["small_quadcopter", "large_multirotor", "fixed_wing"]
 def brute_force(points, wind, vehicle, power, between, worth=0.0, begin=0.0):
     """Each leg at every 2 cm/s, one leg after the other, the cheapest kept."""
     best, clock = [], begin
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         leg, least = np.stack([start, end]), (math.inf, math.nan, clock)
         for airspeed in np.arange(between[0], between[1] + 1e-9, 0.02):
             flown = replace(vehicle, airspeed=float(airspeed))

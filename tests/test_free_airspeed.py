@@ -97,6 +97,6 @@ def test_energy_without_an_airframe_is_told(gallery):
     asked = gw.read_mission(gallery / "village.yaml")
     with pytest.raises(RequestError, match="energy asks for the vehicle's power"):
         gw.plan_route(replace(asked, cost=CostChoice("energy")))
+    shear = gw.read_mission(gallery / "shear.yaml")
     with pytest.raises(RequestError, match="the paper's speed model has no airspeed"):
-        shear = gw.read_mission(gallery / "shear.yaml")
         gw.plan_route(replace(shear, vehicle=replace(shear.vehicle, speed_model="paper")))

@@ -276,5 +276,5 @@ def test_a_return_above_the_height_limit_is_refused():
     heights[20, 5] = 100.0
     dem = Dem.local(heights, -1000.0, 1000.0, 50.0)
     start, goal = Site("start", -750.0, 0.0), Site("goal", 700.0, 0.0)
-    with pytest.raises(RequestError, match=r"rises to \d+\.\d m above ground, more than limits.max_height"):
+    with pytest.raises(RequestError, match=r"is \d+\.\d m above ground, more than limits.max_height"):
         gw.plan_route(request(dem, start=start, goal=goal, finish="return", return_height=40.0))

@@ -22,7 +22,8 @@ its default parameters: terrain and wind do not come into it. The firmware is wh
 and --vehicle-type do. Items count from 1; home is 0.
 """
 EPILOG = (
-    "Exit codes: 0 nothing found but roundings of places below a centimetre; 1 something found (or no route exists, of a mission file to be planned); "
+    "Exit codes: 0 nothing found but roundings of places below a centimetre; 1 something found (or no route exists, of "
+    "a mission file to be planned); "
     "2 something handed in cannot be used."
 )
 _PLANNED = (".yaml", ".yml")

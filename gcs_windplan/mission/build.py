@@ -36,8 +36,8 @@ _SAME_THROTTLE = -1.0  # MAVLink: no change
 class RoutePoint:
     """A point of a planned route; `altitude` AMSL [m].
 
-    `ground_speed` is the planned horizontal ground speed [m/s] of the leg that ends here, `airspeed` what a fixed-wing is
-    to hold on it; None for the first point, and where none is to be commanded.
+    `ground_speed` is the planned horizontal ground speed [m/s] of the leg that ends here, `airspeed` what a fixed-wing
+    is to hold on it; None for the first point, and where none is to be commanded.
     """
 
     point: GeoPoint

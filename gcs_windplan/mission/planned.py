@@ -41,8 +41,8 @@ def flown_duration(plan: Plan) -> MissionDuration | None:
 def mission_of(plan: Plan) -> Mission:
     """The mission that flies a plan: home on the ground under its first waypoint, speeds as planned.
 
-    A leg straight up or down commands no speed; a fixed-wing is told airspeeds. Fence and rally points of the request come with it; rally
-    points are given above home, which every version of every autopilot takes.
+    A leg straight up or down commands no speed; a fixed-wing is told airspeeds. Fence and rally points of the request
+    come with it; rally points are given above home, which every version of every autopilot takes.
     """
     first, last = plan.waypoints[0], plan.waypoints[-1]
     request = plan.request

@@ -74,7 +74,7 @@ def _battery(assessment: Assessment) -> list[Figure]:
     if sums.energy is None:
         return [Figure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
     energy = _figure("Energy", words.watt_hours(sums.energy), "Wh", 0, "take-off and landing counted", good="less")
-    broken = sums.left is not None and sums.reserve is not None and not sums.left >= sums.reserve
+    broken = _found(assessment, "reserve", "battery", "reserve-time")
     note = "" if sums.reserve is None else f"reserve {words.percent(sums.reserve)} %"
     left = Figure(
         "Battery left", words.percent(sums.left), "%", note, broken,
@@ -87,8 +87,7 @@ def _battery(assessment: Assessment) -> list[Figure]:
 def _heights(assessment: Assessment) -> list[Figure]:
     """The smallest and the largest height above ground."""
     sums, limits = assessment.sums, assessment.limits
-    low = limits.clearance is not None and sums.clearance < limits.clearance
-    high = limits.max_height is not None and sums.height > limits.max_height
+    low, high = _found(assessment, "clearance", "terrain"), _found(assessment, "height")
     return [
         _figure("Smallest clearance", sums.clearance, "m", 1, _limit("at least", limits.clearance, "m"), low),
         _figure("Largest height", sums.height, "m", 1, _limit("at most", limits.max_height, "m", "above ground"), high),
@@ -98,12 +97,17 @@ def _heights(assessment: Assessment) -> list[Figure]:
 def _winds(assessment: Assessment) -> list[Figure]:
     """The strongest wind and gust met."""
     sums, limits = assessment.sums, assessment.limits
-    strong = limits.wind is not None and sums.wind > limits.wind
+    strong = _found(assessment, "wind")
     listed = [_figure("Strongest wind", sums.wind, "m/s", 1, _limit("at most", limits.wind, "m/s"), strong)]
     if sums.gust is not None:
-        strong = limits.gust is not None and sums.gust > limits.gust
+        strong = _found(assessment, "gust")
         listed.append(_figure("Strongest gust", sums.gust, "m/s", 1, _limit("at most", limits.gust, "m/s"), strong))
     return listed
+
+
+def _found(assessment: Assessment, *rules: str) -> bool:
+    """Whether one of the rules is broken: the judge knows what rounding may forgive."""
+    return any(finding.rule in rules for finding in assessment.findings)
 
 
 def _limit(how: str, value: float | None, unit: str, otherwise: str = "no limit given") -> str:

@@ -397,3 +397,18 @@ def test_findings_from_elsewhere_are_added():
     assert assess(flown, [far]).findings == (far,)
     assert assess(replace(flown, pace=SWIFT)).verdict == "clear"
     assert free(Command.NAV_RETURN_TO_LAUNCH) == RETURN
+
+
+# The firmware
+
+
+def test_what_the_firmware_makes_of_it_is_found_once_for_all_items_alike():
+    """A spline is none of PX4's; ArduCopter holds whole seconds, and cuts altitudes by less than matters."""
+    spline = at(300, 0, command=Command.NAV_SPLINE_WAYPOINT)
+    (refused,) = found(judged(spline, RETURN, autopilot="px4"), "firmware-command-unsupported")
+    assert (refused.severity, refused.item) == ("danger", 2)
+    assert refused.message.startswith("rejected by PX4 multicopter: item 2: PX4 takes no NAV_SPLINE_WAYPOINT")
+    halves = judged(at(300, 0, 80.123456, 2.5), at(600, 0, 80.123456, 2.5), RETURN)
+    (rounded,) = [finding for finding in halves.findings if finding.rule.startswith("firmware")]
+    assert (rounded.severity, rounded.item) == ("warning", 2)
+    assert "items 2 to 3" in rounded.message

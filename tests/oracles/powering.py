@@ -29,7 +29,7 @@ def naive_table(grid):
 
 
 def naive_price(vehicle, vector, height, wind, watts, worth=0.0) -> float:
-    """Energy and worth of time [J] of a leg in one wind: what the air sees is the velocity over ground less the wind."""
+    """Energy and worth of time [J] of a leg in one wind: the air sees the velocity over ground less the wind."""
     length = float(np.linalg.norm(vector))
     seconds = length * naive_slowness(vehicle, np.asarray(vector) / length, wind)
     if not math.isfinite(seconds):

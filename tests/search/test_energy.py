@@ -153,7 +153,8 @@ def test_the_table_is_the_model(model):
     vehicle = Vehicle(16.0, 3.0, 2.0)
     grid = tabulate(model, vehicle, np.array([16.0, 20.0]), (100.0, 3000.0))
     for _ in range(300):
-        airspeed, rate, height = rng.uniform(15.5 if model is WING else 0.0, 20.0), rng.uniform(-2, 3), rng.uniform(100, 3000)
+        airspeed = rng.uniform(15.5 if model is WING else 0.0, 20.0)
+        rate, height = rng.uniform(-2, 3), rng.uniform(100, 3000)
         true = float(model.watts(airspeed, rate, air_density(height)))
         found = watts_at(grid, airspeed, rate, height)
         if math.isfinite(found):

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.assessment.assessment import JudgedLeg
 from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg
 
@@ -35,9 +36,10 @@ def flyable(mission: Judged) -> Iterator[Found]:
 
 
 def airspeed(mission: Judged) -> Iterator[Found]:
-    """Legs whose commanded speed takes more airspeed than there is."""
+    """Legs whose commanded speed takes more airspeed than there is: one finding for all, where it is worst."""
     case, flown = mission.case, mission.flown
     first = flown.samples.first
+    short: list[tuple[float, JudgedLeg, FloatArray]] = []
     for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
         if flown.stopped[move] or leg.distance < _PASSED:
             continue
@@ -45,13 +47,18 @@ def airspeed(mission: Judged) -> Iterator[Found]:
         needed = _needed(mission, int(move), part)
         worst = int(np.argmax(needed))
         if needed[worst] > case.fastest * (1 + _WORTH_SAYING):
-            held = "slower there" if case.hovers else "held back there"
-            yield on_leg(
-                mission, leg, "airspeed", "warning",
-                f"{leg_name(leg)} takes {needed[worst]:.1f} m/s through the air to keep its speed, and the vehicle"
-                f" reaches {case.fastest:.1f} m/s: it is {held} and arrives later; command less, or fly in less wind",
-                at=flown.samples.places[part][worst], value=float(needed[worst]), limit=case.fastest, unit="m/s",
-            )  # fmt: skip
+            short.append((float(needed[worst]), leg, flown.samples.places[part][worst]))
+    if not short:
+        return
+    most, leg, place = max(short, key=lambda one: one[0])
+    held = "slower there" if case.hovers else "held back there"
+    more = f", and {len(short) - 1} other legs too much" if len(short) > 1 else ""
+    yield on_leg(
+        mission, leg, "airspeed", "warning",
+        f"{leg_name(leg)} takes {most:.1f} m/s through the air to keep its speed{more}, and the vehicle reaches"
+        f" {case.fastest:.1f} m/s: it is {held} and arrives later; command less, or fly in less wind",
+        at=place, value=most, limit=case.fastest, unit="m/s",
+    )  # fmt: skip
 
 
 def gradient(mission: Judged) -> Iterator[Found]:
