@@ -184,7 +184,7 @@ def test_without_webgl_the_scene_says_so(show) -> None:
 def test_the_pointer_reads_the_charts_out(show) -> None:
     mission = made.assessment()
     opened = show(mission)
-    box = opened.place_of(".chart[data-chart=heights] .plot svg")
+    box = opened.place_of(".chart[data-chart=heights] .plot")
     opened.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
     distance = float(opened.reading("distance").removesuffix(" km")) * 1000
     share = (0.7 * box["width"] - 48) / (box["width"] - 62)
@@ -223,7 +223,7 @@ def test_arrow_keys_move_the_cursor_and_say_where_it_is(show) -> None:
 
 def test_a_touch_reads_out_on_a_phone(show) -> None:
     opened = show(made.assessment(), size=PHONE)
-    box = opened.place_of(".chart[data-chart=speed] .plot svg")
+    box = opened.place_of(".chart[data-chart=speed] .plot")
     before = opened.reading("distance")
     opened.page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     assert opened.reading("distance") != before
@@ -266,8 +266,8 @@ def test_the_charts_go_over_time_too(show) -> None:
     mission = made.assessment()
     opened = show(mission)
     opened.page.locator("input[name=axis][value=t]").check()
-    assert "time since take-off" in opened.page.locator(".chart[data-chart=heights] .plot svg").text_content()
-    box = opened.place_of(".chart[data-chart=heights] .plot svg")
+    assert "time since take-off" in opened.page.locator(".chart[data-chart=heights] .plot").text_content()
+    box = opened.place_of(".chart[data-chart=heights] .plot")
     opened.page.mouse.move(box["x"] + 48 + (box["width"] - 62) / 2, box["y"] + box["height"] / 2)
     minutes, seconds = opened.reading("time").split(":")
     assert 60 * int(minutes) + int(seconds) == pytest.approx(mission.profile.seconds[-1] / 2, abs=5)
