@@ -1,4 +1,4 @@
-"""The battery through a mission: what is left at each waypoint, and whether the reserve stays."""
+"""The battery through a mission: what is left at each waypoint, and whether what must be left stays."""
 
 from __future__ import annotations
 
@@ -8,6 +8,15 @@ from dataclasses import dataclass
 from gcs_windplan.errors import BatteryError
 from gcs_windplan.flight import Flight
 from gcs_windplan.request import Request
+from gcs_windplan.vehicle import air_density
+
+
+@dataclass(frozen=True, slots=True)
+class Allowance:
+    """What a flight may draw by one rule [J]; `rule` in words."""
+
+    rule: str
+    energy: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,19 +24,56 @@ class BatteryUse:
     """What a flight takes [J], take-off and, where it lands, landing included.
 
     `left` is the share of the whole capacity that is left at each waypoint, in the request's wind. `total` is what must
-    be reckoned with: over an ensemble the member at the request's quantile. `allowed` is the usable energy without the
-    reserve.
+    be reckoned with: over an ensemble the member at the request's quantile. `allowed` is what the flight may draw: the
+    least of the `allowances`.
     """
 
     left: tuple[float, ...]
     total: float
     usable: float
-    allowed: float
+    allowances: tuple[Allowance, ...]
+
+    @property
+    def allowed(self) -> float:
+        """What the flight may draw [J]."""
+        return max(min(one.energy for one in self.allowances), 0.0)
 
     @property
     def missing(self) -> float:
-        """By how much the reserve is broken [J], 0 where it stays."""
+        """By how much the strictest rule is broken [J], 0 where all are kept."""
         return max(self.total - self.allowed, 0.0)
+
+    @property
+    def broken(self) -> tuple[Allowance, ...]:
+        """The rules that the flight breaks."""
+        return tuple(one for one in self.allowances if self.total > one.energy)
+
+
+def allowances_of(request: Request, height: float) -> tuple[Allowance, ...]:
+    """What a flight may draw from the battery by each rule; all of them hold, so the least counts.
+
+    Of the whole capacity C [J], of which U is usable, must be left on landing:
+
+        the airframe's reserve r    (C - U) + r U           what is not usable, and a share of what is
+        limits.battery b            b C                     a share of all, what is not usable within it
+        limits.reserve t            (C - U) + t P           what is not usable, and t [s] at P [W]
+
+    where P is the power of level flight at the vehicle's airspeed, at a `height` above mean sea level [m]. None where
+    no airframe is known.
+    """
+    airframe, limits = request.airframe, request.limits
+    if airframe is None:
+        return ()
+    battery = airframe.battery
+    rules = [Allowance("the reserve", battery.energy_to_plan_with)]
+    if limits.battery is not None:
+        rule = f"limits.battery ({100 * limits.battery:g} % left of {battery.capacity / 3600:.0f} Wh)"
+        rules.append(Allowance(rule, (1 - limits.battery) * battery.capacity))
+    if limits.reserve_seconds is not None:
+        watts = float(airframe.power.watts(request.vehicle.airspeed, 0.0, air_density(height)))
+        rule = f"limits.reserve ({limits.reserve_seconds / 60:g} min at {watts:.0f} W)"
+        rules.append(Allowance(rule, battery.usable_energy - limits.reserve_seconds * watts))
+    return tuple(rules)
 
 
 def battery_use(
@@ -48,17 +94,21 @@ def battery_use(
         left.append(1 - drawn / battery.capacity)
     ends = totals.takeoff_energy + (totals.landing_energy if request.finish == "land" else home_again)
     total = ends + (totals.energy if en_route is None else max(en_route, totals.energy))
-    return BatteryUse(tuple(left), total, battery.usable_energy, battery.energy_to_plan_with)
+    height = math.fsum(waypoint.altitude for waypoint in flight.waypoints) / len(flight.waypoints)
+    return BatteryUse(tuple(left), total, battery.usable_energy, allowances_of(request, height))
 
 
 def refuse_overdrawn(use: BatteryUse | None) -> None:
-    """Raise `BatteryError` for a flight that breaks the reserve, by how much."""
+    """Raise `BatteryError` for a flight that leaves too little: by which rules, and by how much."""
     if use is None or use.missing == 0:
         return
     total = f"{use.total / 3600:.0f} Wh" if math.isfinite(use.total) else "more than any battery gives"
-    over = f" by {use.missing / 3600:.0f} Wh" if math.isfinite(use.missing) else ""
+    over = [
+        one.rule + (f" by {(use.total - one.energy) / 3600:.0f} Wh" if math.isfinite(use.total) else "")
+        for one in use.broken
+    ]
     raise BatteryError(
-        f"the mission takes {total}, and with its reserve the battery gives {use.allowed / 3600:.0f} of"
-        f" {use.usable / 3600:.0f} usable Wh: it breaks the reserve{over}. Another departure, a shorter way, a lower"
-        " reserve in the airframe's file, or `plan --force`."
+        f"the mission takes {total}, and with what must be left the battery gives {use.allowed / 3600:.0f} of"
+        f" {use.usable / 3600:.0f} usable Wh: it breaks {' and '.join(over)}. Another departure, a shorter way, less to"
+        " be left (limits, or the airframe's reserve), or `plan --force`."
     )

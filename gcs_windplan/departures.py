@@ -11,19 +11,19 @@ import numpy as np
 
 from gcs_windplan.battery import battery_use
 from gcs_windplan.cores import available_cores
-from gcs_windplan.cost import CostChoice
+from gcs_windplan.cost import CostChoice, rank_of
 from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import NoRouteError, WindError
-from gcs_windplan.flight import Flight, fly, fly_legs
+from gcs_windplan.flight import Flight, fly
 from gcs_windplan.homing import home_from_the_end
+from gcs_windplan.ordering import put_in_order
 from gcs_windplan.planner import prepare
 from gcs_windplan.request import Request
-from gcs_windplan.routing import FoundRoute, Ready, find_route
+from gcs_windplan.routing import Ready, find_route
 from gcs_windplan.shaping import shape_quickly
-from gcs_windplan.wind.field import WindField
+from gcs_windplan.windlimits import Strongest, limited, strongest_along
 
 _NEAR_THE_END = 2.0  # durations of the flight
-_SAMPLES = 8  # of the wind along each leg
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +76,7 @@ def sweep(
     and flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
     """
     ready = prepare(replace(request, members=())) if request.members else prepare(request)
+    request = limited(request, 0.0)
     if request.departure is not None and len(moments):
         begins = [(moment - request.departure).total_seconds() for moment in moments]
     else:
@@ -105,7 +106,8 @@ class _Job:
         """The best route that begins at `begin` [s after the request's departure]."""
         since, request = time.process_time(), self.request
         try:
-            found = find_route(self.ready, self.choice, begin, shape_quickly)
+            ready = put_in_order(self.ready, self.choice, begin)[0]
+            found = find_route(ready, self.choice, begin, shape_quickly)
             flight = fly(
                 found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
                 found.airspeeds,
@@ -113,20 +115,24 @@ class _Job:
         except (NoRouteError, WindError) as error:
             return Departure(moment, reason=str(error), worked=time.process_time() - since)
         spread = spread_of(request, found.points, begin, found.airspeeds)
-        wind, gust = self._strongest(found, begin)
+        strongest = strongest_along(request, found.points, begin, found.airspeeds)
         return Departure(
-            moment, flight.totals.seconds, flight.totals.length, flight.totals.energy, spread, wind, gust,
-            self._reason(flight, spread, begin), time.process_time() - since,
+            moment, flight.totals.seconds, flight.totals.length, flight.totals.energy, spread, strongest.wind,
+            strongest.gust, self._reason(flight, spread, strongest, begin), time.process_time() - since,
             request.robust,
         )  # fmt: skip
 
-    def _reason(self, flight: Flight, spread: Spread | None, begin: float) -> str | None:
-        """Why it is not to be flown: too few members can, or the battery's reserve is broken."""
-        request = self.request
+    def _reason(self, flight: Flight, spread: Spread | None, strongest: Strongest, begin: float) -> str | None:
+        """Why it is not to be flown: too few members can, a limit of the wind or the battery's reserve is broken."""
+        request, keeping = self.request, strongest.keeping(self.request.limits)
+        members = len(strongest.winds)
         if spread is not None and not np.isfinite(spread.at(request.robust)):
-            return (
-                f"{len(spread.seconds) - spread.unflyable}/{len(spread.seconds)} members{self._ending(flight, begin)}"
-            )
+            able = members - spread.unflyable
+            if keeping < members:
+                return f"{able}/{members}, wind limit"
+            return f"{able}/{members} members{self._ending(flight, begin)}"
+        if keeping <= rank_of(request.robust, members):
+            return "wind limit" if spread is None else f"{keeping}/{members}, wind limit"
         en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
         returns = request.finish == "return" and self.ready.power is not None
         home_again = home_from_the_end(self.ready, flight, begin) if returns else 0.0
@@ -140,15 +146,3 @@ class _Job:
         times = self.request.wind.times
         near = len(times) > 1 and begin + _NEAR_THE_END * flight.totals.seconds > times[-1]
         return ", forecast ends" if near else ""
-
-    def _strongest(self, found: FoundRoute, begin: float) -> tuple[float, float | None]:
-        """The strongest wind and gust along a route in any member [m/s]."""
-        request, points = self.request, found.points
-        fields: Sequence[WindField] = request.members or (request.wind,)
-        _, times = fly_legs(points, request.wind, request.vehicle, begin, found.airspeeds)
-        share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-        places = (points[:-1, None] + share[None, :, None] * np.diff(points, axis=0)[:, None]).reshape(-1, 3)
-        when = (times[:-1, None] + share[None, :] * np.diff(times)[:, None]).ravel()
-        winds = max(float(np.nanmax(np.hypot(*one.at(places, when)[:, :2].T))) for one in fields)
-        gusts = [float(np.nanmax(np.hypot(*one.at(places, when)[:, :2].T))) for one in request.gusts]
-        return winds, max(gusts) if gusts else None

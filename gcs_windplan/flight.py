@@ -15,7 +15,9 @@ from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Terrain
 from gcs_windplan.vehicle import PowerModel, Vehicle, air_density
 from gcs_windplan.wind.field import WindField
+from gcs_windplan.wind.limited import LimitedWind
 
+_LOOKS = 512  # at the wind along a leg, to say why it cannot be flown
 _NEAR_THE_END = 3600.0  # [s] a leg that stops so shortly before the forecast's end stops because of it
 
 
@@ -118,7 +120,7 @@ def fly(
     """
     starts, ends = points[:-1], points[1:]
     parts, times = fly_legs(points, wind, vehicle, begin, airspeeds)
-    _refuse_unflyable(parts, times, wind, np.hypot(*(ends - starts)[:, :2].T))
+    _refuse_unflyable(parts, times, wind, points)
     heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
     convergence = np.degrees(frame.convergence((starts + ends) / 2))
     speeds = np.full(len(starts), float(vehicle.airspeed)) if airspeeds is None else airspeeds
@@ -152,7 +154,7 @@ def fly_legs(
     return clocked(measure, still_air_times(points, vehicle, begin), len(wind.times) > 1)
 
 
-def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, lengths: FloatArray) -> None:
+def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, points: FloatArray) -> None:
     """Raise if the wind, looked at closely, stops a leg that the graph's coarser wind let pass."""
     stopped = np.flatnonzero(~np.isfinite(parts.seconds))
     if len(stopped):
@@ -164,13 +166,19 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
                 " take a forecast that reaches further, or depart earlier.",
                 {"wind": len(stopped)},
             )
+        if isinstance(wind, LimitedWind) and _closed_somewhere(wind, points[i : i + 2], float(times[i])):
+            raise NoRouteError(
+                f"leg {i + 1} cannot be flown: it leads through air that the wind limit closes ({wind}). A finer graph,"
+                " other layers, another departure, or a higher limit.",
+                {"wind limit": len(stopped)},
+            )
         if not np.isfinite(parts.along[i] + parts.across[i]):
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"
                 " wind is not known there. Use a finer graph, a limits.max_height below that level, or a higher wind.",
                 {"wind": len(stopped)},
             )
-        if lengths[i] < 1e-6:
+        if math.hypot(*(points[i + 1] - points[i])[:2]) < 1e-6:
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it goes straight up or down, and in the wind there the vehicle cannot"
                 " hold its place. Use other layers, more airspeed, or another departure.",
@@ -182,6 +190,12 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, l
             " or another departure.",
             {"wind": len(stopped)},
         )
+
+
+def _closed_somewhere(wind: LimitedWind, leg: FloatArray, begin: float) -> bool:
+    """Whether the wind's limits close a leg (2, 3) that begins at `begin` [s since departure]."""
+    places = leg[0] + np.linspace(0.0, 1.0, _LOOKS)[:, None] * (leg[1] - leg[0])
+    return bool(wind.closed(places, begin if math.isfinite(begin) else 0.0).any())
 
 
 def _leg(

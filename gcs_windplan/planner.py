@@ -21,6 +21,7 @@ from gcs_windplan.ensemble import Spread, spread_of
 from gcs_windplan.errors import BatteryError, NoRouteError, RequestError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
 from gcs_windplan.homing import WaysHome, home_from_the_end, refuse_stranded, ways_home
+from gcs_windplan.ordering import put_in_order, too_many_or_equal
 from gcs_windplan.request import Request, Roadmap
 from gcs_windplan.routing import FoundRoute, Ready, find_route, power_of, unshaped
 from gcs_windplan.search import WindyVeil, blow
@@ -37,6 +38,7 @@ from gcs_windplan.siting import (
 from gcs_windplan.terrain import Extent
 from gcs_windplan.veil import Clearance, GridVeil, PrmVeil, lay_grid, lay_prm
 from gcs_windplan.waiting import until_it_opens, where_it_pays
+from gcs_windplan.windlimits import Strongest, limited, limits_broken_at_sites, strongest_along
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,7 @@ class Plan:
     `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
     the same route in every member of an ensemble, where there is one (the flight itself is in their mean); `battery`
     and `ways_home` from each waypoint are known where the airframe is; `notes` say what a pilot must know before flying
-    it.
+    it; `strongest` wind and gust are known where there is a limit.
     """
 
     request: Request
@@ -71,6 +73,7 @@ class Plan:
     battery: BatteryUse | None = None
     ways_home: WaysHome | None = None
     notes: tuple[str, ...] = ()
+    strongest: Strongest | None = None
 
     @property
     def waypoints(self) -> tuple[Waypoint, ...]:
@@ -137,14 +140,17 @@ def prepare(request: Request) -> Ready:
     )
     layers = choose_layers(request)
     sites, problems = stand_sites(request, rules, layers)
-    problems = problems or windless_sites(request, sites)
+    problems = problems or windless_sites(request, sites) or limits_broken_at_sites(request, sites)
+    problems = problems or too_many_or_equal(request, sites)
     if problems:
         raise RequestError([request.locate(problem) for problem in problems])
     begin = time.perf_counter()
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
-    windy = blow(_lay_veil(request, rules, layers, sites, area), request.wind, request.members)
-    return Ready(request, rules, sites, windy, time.perf_counter() - begin, power_of(request, windy, sites))
+    bound = limited(request)
+    windy = blow(_lay_veil(request, rules, layers, sites, area), bound.wind, bound.members)
+    seconds = time.perf_counter() - begin
+    return Ready(bound, request, rules, sites, windy, seconds, power_of(request, windy, sites))
 
 
 def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
@@ -152,18 +158,24 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
     """
+    ordered, notes = put_in_order(ready, choice, begin)
+    plan = _quickest(ordered, choice, begin)
+    return replace(plan, notes=(*notes, *plan.notes))
+
+
+def _quickest(ready: Ready, choice: CostChoice, begin: float) -> Plan:
+    """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
     if choice.name != "time" or not ready.request.free_airspeed or ready.request.airframe is None:
         return _planned(ready, choice, begin)
-    battery, power = ready.request.airframe.battery, ready.request.airframe.power
-    allowed = battery.energy_to_plan_with
+    power = ready.request.airframe.power
     quick, worth = quickest_within(
         lambda worth: _planned(ready, choice, begin, worth, shape_quickly),
-        lambda plan: math.inf if plan.battery is None else plan.battery.total,
-        allowed,
+        lambda plan: math.inf if plan.battery is None else plan.battery.missing,
+        0.0,
         float(power.watts(ready.request.vehicle.airspeed, 0.0)),
     )
     plan = _planned(ready, choice, begin, worth)
-    fits = plan.battery is not None and plan.battery.total <= allowed
+    fits = plan.battery is not None and plan.battery.missing == 0
     return plan if fits or worth == 0.0 else quick
 
 
@@ -187,7 +199,7 @@ def _planned(
             f"{error}{until_it_opens(begin, ready.windy.ends, partial(_lasting, ready))}", error.cuts
         ) from error
     flight = fly(
-        found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
+        found.points, request.frame, request.terrain, ready.flown.wind, request.vehicle, begin, request.power,
         found.airspeeds,
     )  # fmt: skip
     effort = Effort(
@@ -199,10 +211,15 @@ def _planned(
         notes += where_it_pays(found.arrival - begin, begin, partial(_lasting, ready))
     en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
     battery = battery_use(request, flight, en_route, _home_again(ready, flight, begin))
-    ways = None
+    ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
         ways = ways_home(ready, flight, battery, request.airframe.battery.capacity, begin)
-    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes)
+    if ready.flown is not ready.asked:
+        strongest = strongest_along(ready.asked, found.points, begin, found.airspeeds)
+        strongest.refuse_over(request.limits, request.robust)
+    return Plan(
+        ready.asked, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest
+    )
 
 
 def _home_again(ready: Ready, flight: Flight, begin: float) -> float:
@@ -241,7 +258,7 @@ def _best_route(
         except NoRouteError as no_route:
             error = error or no_route
             continue
-        spread = spread_of(request, found.points, begin, found.airspeeds)
+        spread = spread_of(ready.flown, found.points, begin, found.airspeeds)
         assert spread is not None
         candidates.append((found, spread))
     if not candidates:
@@ -296,5 +313,5 @@ def _lasting(ready: Ready, begin: float) -> float:
         found = find_route(ready, CostChoice("time"), begin, unshaped)
     except (NoRouteError, WindError):
         return float("inf")
-    spread = spread_of(ready.request, found.points, begin, found.airspeeds)
+    spread = spread_of(ready.flown, found.points, begin, found.airspeeds)
     return found.arrival - begin if spread is None else spread.at(ready.request.robust)

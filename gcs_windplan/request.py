@@ -18,6 +18,9 @@ from gcs_windplan.wind.field import WindField
 
 Finish: TypeAlias = Literal["land", "return", "hold"]
 AltitudeReference: TypeAlias = Literal["relative", "amsl"]
+Order: TypeAlias = Literal["given", "free"]
+
+MOST_TO_ORDER = 12  # vias; each more takes twice as long, and as much memory
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +101,8 @@ class Limits:
 class Request:
     """One planning job.
 
+    With a free `order` the vias, 12 at most, are passed in the order that costs least, not as they stand in `via`.
+
     `clearance`, `max_height` [m above ground] and `limits` hold for every leg along its whole length. `layers` are
     heights above ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites.
     A vehicle that returns at the end flies home at `return_height` above home [m], or higher if it is; or to the
@@ -116,6 +121,7 @@ class Request:
     start: Site
     goal: Site
     via: tuple[Site, ...] = ()
+    order: Order = "given"
     clearance: float = 30.0
     max_height: float | None = None
     limits: Limits = field(default_factory=Limits)

@@ -158,7 +158,7 @@ def _return_blocked(
     if not heights[0] >= rules.minimum - _SLACK:
         problems.append(Problem(_low_return(way, levels, heights[0], rules.minimum), field))
     elif heights[1] > rules.maximum + _SLACK:
-        text = f"the straight flight {way} at {levels[1]:.0f} m above sea level rises to {heights[1]:.1f} m above ground"
+        text = f"the straight flight {way} at {levels[1]:.0f} m above sea level is {heights[1]:.1f} m above ground"
         problems.append(Problem(f"{text}, more than limits.max_height: lower the goal, or land there", field))
     if broken := rules.airspace.broken_by(away, back):
         problems.append(Problem(f"the straight flight {way} breaks '{broken[0]}': land at the goal instead", field))

@@ -23,7 +23,7 @@ wind: {{forecast: {data}/wind/bella_lui_weather_data_ERA5.nc}}
 start: {{latitude: 46.803, longitude: 9.845}}
 goal: {{latitude: 46.834, longitude: 9.812}}
 clearance: 40 m
-max_height: 150 m
+limits: {{max_height: 150 m}}
 graph: {{uniform: {{spacing: 60 m}}}}
 departure: {departure}
 """
@@ -35,7 +35,7 @@ wind: {{constant: {{speed: 5 m/s, from: 300 deg}}, profile: {{law: power, expone
 start: {{latitude: -35.363262, longitude: 149.165237}}
 goal: {{latitude: -35.30, longitude: 149.22}}
 clearance: 40 m
-max_height: 120 m
+limits: {{max_height: 120 m}}
 """
 BUTTE = """\
 name: butte
@@ -45,7 +45,7 @@ wind: {{forecast: {data}/wind/ndfd_20170603T1800.nc, profile: {{law: log, roughn
 start: {{latitude: 43.36, longitude: -113.08}}
 goal: {{latitude: 43.43, longitude: -112.97}}
 clearance: 50 m
-max_height: 150 m
+limits: {{max_height: 150 m}}
 departure: 2017-06-03T19:00Z
 """
 

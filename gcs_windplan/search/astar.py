@@ -8,14 +8,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
+from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray
 from gcs_windplan.cost import LegCost
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import search_csr, search_grid
-from gcs_windplan.kernels.edges import joins, remaining
+from gcs_windplan.kernels.edges import Setting, joins, remaining
 from gcs_windplan.search.windy import WindyVeil
 from gcs_windplan.veil import BREACHES, GridVeil, PrmVeil, breaches_around
-from gcs_windplan.veil.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, UNKNOWN_GROUND
+from gcs_windplan.veil.clearance import (
+    AIRSPACE,
+    OBSTACLE,
+    OUTSIDE,
+    TOO_HIGH,
+    TOO_LOW,
+    TOO_WINDY,
+    UNKNOWN_GROUND,
+)
+from gcs_windplan.wind.limited import LimitedWind
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
 _LONG = 3.0  # times the straight way in still air: for so long the wind is sampled at first
@@ -28,6 +37,7 @@ _ADVICE = {
     BREACHES[OBSTACLE]: "Move the site, lower the obstacle's margin, refine the graph or widen graph.margin.",
     BREACHES[OUTSIDE]: "Widen graph.margin.",
     BREACHES[AIRSPACE]: "Move the site, correct the areas, or widen graph.margin.",
+    BREACHES[TOO_WINDY]: "A higher limit, another departure, other layers, or widen graph.margin.",
     _CUT_BY_WIND: "More airspeed, another departure, or other layers.",
 }
 
@@ -64,7 +74,8 @@ def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArr
         horizon *= 3
     seconds = time.perf_counter() - begin
     if len(found.points) == 0:
-        raise no_route(windy.veil, np.flatnonzero(np.isfinite(found.reached)), start, goal, found.outlasted > 0)
+        reached = np.flatnonzero(np.isfinite(found.reached))
+        raise no_route(windy, reached, start, goal, found.outlasted > 0, cost.rank)
     return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
@@ -89,7 +100,7 @@ def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: Float
     site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
     setting = cost.setting(goal, np.concatenate([windy.winds, air], axis=-2))
     world = windy.times, cost.rank, cost.scratch(), np.zeros(2, dtype=np.int64)
-    performance, estimates = cost.performance(), cost.estimates(windy.points, start, goal, setting)
+    performance, estimates = cost.performance(), _estimates(cost, windy.points, start, goal, setting)
 
     def leave(nodes: IntArray, winds: FloatArray, vectors: FloatArray) -> FloatArray:
         times, rank, each, tally = world
@@ -122,6 +133,12 @@ def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: Float
     return _Found(points, min(direct, total), expanded, reached, outlasted, deferred)
 
 
+def _estimates(cost: LegCost, points: FloatArray, start: FloatArray, goal: FloatArray, setting: Setting) -> FloatArray:
+    """The cost's estimates; none (0) where the wind on the way to the goal is not known, or closed."""
+    estimates = cost.estimates(points, start, goal, setting)
+    return np.where(np.isnan(estimates), 0.0, estimates)
+
+
 def _clear_nodes(windy: WindyVeil, site: FloatArray) -> IntArray:
     """The nodes around a site with a clear leg between the two."""
     veil = windy.veil
@@ -140,7 +157,7 @@ def _search_prm(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatA
     tally = np.zeros(2, dtype=np.int64)
     setting = cost.setting(goal, windy.winds)
     nodes, total, expanded, reached = search_csr(
-        veil.first, veil.neighbours, veil.points, windy.winds, cost.estimates(veil.points, start, goal, setting),
+        veil.first, veil.neighbours, veil.points, windy.winds, _estimates(cost, veil.points, start, goal, setting),
         cost.performance(), setting, cost.power, ends[0], ends[1],
         windy.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
@@ -148,9 +165,10 @@ def _search_prm(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatA
 
 
 def no_route(
-    veil: GridVeil | PrmVeil, reached: IntArray, start: FloatArray, goal: FloatArray, outlasted: bool = False
+    windy: WindyVeil, reached: IntArray, start: FloatArray, goal: FloatArray, outlasted: bool = False, rank: int = 0
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
+    veil = windy.veil
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)
     elif len(reached) == 0:
@@ -164,11 +182,14 @@ def no_route(
             flags = veil.clearance.breaches(veil.points_of(around), np.broadcast_to(goal, (len(around), 3)))
             led = np.full(len(around), -1)
     inner = np.isin(led, reached)
+    flags = np.where((flags == 0) & _too_windy(windy, led, goal, rank), TOO_WINDY, flags).astype(np.uint8)
     cuts = _count(flags[~inner] if not inner.all() else flags)
     if not cuts:
         text = "no node lies near enough: use a finer graph, more nodes or a larger radius"
         return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
-    listed = "; ".join(f"{name}: {count} legs" for name, count in cuts.items())
+    limit = f"wind limit ({windy.fields[0]})"
+    told = {limit if name == BREACHES[TOO_WINDY] else name: count for name, count in cuts.items()}
+    listed = "; ".join(f"{name}: {count} legs" for name, count in told.items())
     advice = _ADVICE[next(iter(cuts))]
     if outlasted:
         advice += " Some ways last longer than the forecast reaches: take a later end, or depart earlier."
@@ -177,6 +198,19 @@ def no_route(
         f" {advice}",
         cuts,
     )
+
+
+def _too_windy(windy: WindyVeil, nodes: IntArray, goal: FloatArray, rank: int) -> BoolArray:
+    """Which nodes (-1: the goal) limits of wind close at some time, in more members than may be left out."""
+    closed = np.zeros((len(windy.fields), len(nodes)), dtype=np.bool_)
+    places = np.where(nodes[:, None] < 0, goal, windy.points[nodes])
+    known = np.isfinite(places).all(axis=1)
+    for member, wind in enumerate(windy.fields):
+        if isinstance(wind, LimitedWind):
+            for moment in np.zeros(1) if windy.times is None else windy.times:
+                closed[member, known] |= wind.closed(places[known], float(moment))
+    many: BoolArray = closed.sum(axis=0) > len(windy.fields) - 1 - rank
+    return many
 
 
 def _prm_border(veil: PrmVeil, reached: IntArray) -> tuple[IntArray, FlagArray]:

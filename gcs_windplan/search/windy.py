@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,7 +13,10 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cores import spread
 from gcs_windplan.veil import GridVeil, PrmVeil
 from gcs_windplan.wind.field import WindField
+from gcs_windplan.wind.limited import LimitedWind, with_spare
 
+_OFTEN = 600.0  # [s] how often limits are looked at, if the wind's times lie farther apart
+_MOST_MOMENTS = 24  # from a departure to the end of what is searched
 _BATCH = 100_000  # nodes whose wind is sampled at a time
 
 
@@ -45,7 +49,7 @@ class WindyVeil:
         """
         if self.times is None:
             return
-        knots = self.fields[0].times if len(self.fields[0].times) > 1 else np.zeros(1)
+        knots = self._moments(begin, until)
         first = max(int(np.searchsorted(knots, begin, side="right")) - 1, 0)
         last = min(int(np.searchsorted(knots, until, side="left")), len(knots) - 1)
         wanted = knots[first : max(last, min(first + 1, len(knots) - 1)) + 1]
@@ -57,11 +61,23 @@ class WindyVeil:
         stacked = np.stack([self._slices[float(knot)] for knot in wanted], axis=1)
         self.times, self.winds = wanted, stacked if len(self.fields) > 1 else stacked[0]
 
+    def _moments(self, begin: float, until: float) -> FloatArray:
+        """The wind's own times, between which it is linear. With limits others between them, as a limit is not."""
+        knots = self.fields[0].times if len(self.fields[0].times) > 1 else np.zeros(1)
+        if len(knots) < 2 or not isinstance(self.fields[0], LimitedWind):
+            return knots
+        step = max(_OFTEN, (until - begin) / _MOST_MOMENTS)
+        parts = [np.linspace(a, b, math.ceil((b - a) / step), endpoint=False) for a, b in pairwise(knots)]
+        moments = np.append(np.concatenate(parts), knots[-1])
+        self._slices = {time: there for time, there in self._slices.items() if time in knots or time in moments}
+        return moments
+
     def at(self, points: FloatArray) -> FloatArray:
-        """The wind at a few points (k, 3), shaped as `winds`."""
+        """The wind at a few points (k, 3), shaped as `winds`; closed at the limits themselves, where they have any."""
+        fields = [with_spare(one, 0.0) for one in self.fields]
         if self.times is None:
-            return self.fields[0].at(points)
-        there = [np.stack([one.at(points, float(time)) for time in self.times]) for one in self.fields]
+            return fields[0].at(points)
+        there = [np.stack([one.at(points, float(time)) for time in self.times]) for one in fields]
         return np.stack(there) if len(self.fields) > 1 else there[0]
 
     def _sampled(self, seconds: float) -> list[FloatArray]:

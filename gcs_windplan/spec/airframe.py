@@ -56,7 +56,7 @@ class BatteryModel(Section):
     capacity: Capacity = Field(description="energy from full to empty", examples=["130 Wh"])
     usable: Share = Field(default=0.8, description="share of the capacity that may be drawn at all")
     reserve: Reserve = Field(
-        default=0.2, description="share of the usable energy to come home with, where a mission asks for no other"
+        default=0.2, description="share of the usable energy to come home with; a mission's limits may ask for more"
     )
 
 

@@ -85,7 +85,7 @@ class AreaModel(Section):
 class FenceModel(Section):
     """The autopilot's own fence, besides the areas that are marked with `fence: true`."""
 
-    expects: ClassVar[str] = "{return_point: ...}, and 'fence: true' at the keep_out and keep_in areas it shall hold,"
+    expects: ClassVar[str] = "{return_point: ...}, and 'fence: true' at the areas in limits that it shall hold,"
 
     return_point: SiteModel | None = Field(
         default=None, description="where a vehicle that broke the fence flies to; only ArduPlane does so"

@@ -14,15 +14,17 @@ import numpy as np
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.request import Export, FenceArea, Request, Roadmap, Site, Uniform
+from gcs_windplan.request import Export, FenceArea, Limits, Request, Roadmap, Site, Uniform
 from gcs_windplan.siting import choose_margin
 from gcs_windplan.spec.airframe import read_airframe
 from gcs_windplan.spec.areas import AreaModel
+from gcs_windplan.spec.limits import LimitsModel
 from gcs_windplan.spec.model import GraphModel, MissionModel
 from gcs_windplan.spec.outlines import fence_area_of, prism_of
 from gcs_windplan.spec.parsing import MissionDocument, read_document
 from gcs_windplan.spec.places import place_of
 from gcs_windplan.spec.terrain import build_obstacles, build_terrain
+from gcs_windplan.spec.values import FREE
 from gcs_windplan.spec.wind import DAY, Departure, build_wind
 from gcs_windplan.spec.world import SiteModel
 from gcs_windplan.terrain import Extent
@@ -56,8 +58,8 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
     airframe = _collected(document, "vehicle.airframe", problems, lambda: _airframe(document))
     obstacles = _collected(document, "obstacles", problems, lambda: build_obstacles(document, frame, terrain))
     airspace = Airspace(
-        _prisms(document, "keep_out", model.keep_out, frame, problems),
-        _prisms(document, "keep_in", model.keep_in, frame, problems),
+        _prisms(document, "keep_out", model.limits.keep_out, frame, problems),
+        _prisms(document, "keep_in", model.limits.keep_in, frame, problems),
     )
     when = Departure(model.departure if departure is None else departure.astimezone(UTC), lasting)
     winds = _collected(document, "wind", problems, lambda: build_wind(document, frame, terrain, area, when))
@@ -73,8 +75,10 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         start=sites[0],
         goal=sites[-1],
         via=tuple(sites[1:-1]),
+        order=model.order,
         clearance=model.clearance,
-        max_height=model.max_height,
+        max_height=model.limits.max_height,
+        limits=_limits(model.limits),
         cost=CostChoice(**model.cost.model_dump()),
         graph=_graph(graph),
         layers=graph.layers or (),
@@ -93,6 +97,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         gusts=winds.gusts,
         robust=0.5 if model.robust is None else model.robust,
         airframe=airframe,
+        free_airspeed=model.vehicle.airspeed == FREE,
         locate=_locator(document),
     )
 
@@ -109,6 +114,8 @@ def _vehicle(model: MissionModel, airframe: Airframe | None) -> Vehicle:
     if airframe is None:
         return Vehicle(**written)
     own = {name: written[name] for name in model.vehicle.model_fields_set if name in written}
+    if own.get("airspeed") == FREE:
+        del own["airspeed"]
     return replace(airframe.vehicle, **own)
 
 
@@ -118,6 +125,11 @@ def _graph(model: GraphModel) -> Uniform | Roadmap:
         return Roadmap(**model.prm.model_dump())
     assert model.uniform is not None
     return Uniform(**model.uniform.model_dump())
+
+
+def _limits(model: LimitsModel) -> Limits:
+    """The limits of wind and battery; heights and areas have their own places in the request."""
+    return Limits(model.wind, model.gust, model.battery, model.reserve, model.way_home)
 
 
 def _locator(document: MissionDocument) -> Callable[[Problem], Problem]:
@@ -229,13 +241,14 @@ def _with(area: Extent, sites: list[Site]) -> Extent:
 
 def _fence(model: MissionModel, frame: LocalFrame) -> tuple[FenceArea, ...]:
     """The areas that the autopilot's fence holds too."""
-    areas = [(area, True) for area in model.keep_out] + [(area, False) for area in model.keep_in]
+    limits = model.limits
+    areas = [(area, True) for area in limits.keep_out] + [(area, False) for area in limits.keep_in]
     return tuple(fence_area_of(area, frame, keep_out) for area, keep_out in areas if area.fence)
 
 
 def _prisms(
     document: MissionDocument,
-    field: str,
+    kind: str,
     areas: tuple[AreaModel, ...],
     frame: LocalFrame,
     problems: list[Problem],
@@ -245,7 +258,7 @@ def _prisms(
     for i, area in enumerate(areas):
         shape = "polygon" if area.circle is None else "circle"
         prism = _collected(
-            document, f"{field}.{i}.{shape}", problems, partial(prism_of, area, frame, field == "keep_out")
+            document, f"limits.{kind}.{i}.{shape}", problems, partial(prism_of, area, frame, kind == "keep_out")
         )
         if prism is not None:
             prisms.append(prism)

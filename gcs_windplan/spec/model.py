@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from gcs_windplan.spec.areas import AreaModel, FenceModel
+from gcs_windplan.spec.areas import FenceModel
+from gcs_windplan.spec.limits import LimitsModel
 from gcs_windplan.spec.rules import DEFAULT_CLEARANCE, mission_contradictions
 from gcs_windplan.spec.section import Fields, Finding, Section, at_most_one, suggestion
 from gcs_windplan.spec.values import (
     WEIGHT,
-    Airspeed,
+    AirspeedOrFree,
     FileName,
     FileStem,
     Flag,
@@ -37,8 +38,11 @@ class VehicleModel(Section):
     )
     type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
     autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="firmware the mission is for")
-    airspeed: Airspeed | None = Field(
-        default=None, description="cruise speed through the air; needed without an `airframe`", examples=["12 m/s"]
+    airspeed: AirspeedOrFree | None = Field(
+        default=None,
+        description="cruise speed through the air; needed without an `airframe`. `free`: each leg at its own, between"
+        " the airframe's of least power and its largest, whatever serves the cost best",
+        examples=["12 m/s"],
     )
     climb: PositiveSpeed = Field(default=2.5, description="largest speed upwards")
     descent: PositiveSpeed = Field(default=1.5, description="largest speed downwards")
@@ -54,15 +58,18 @@ class VehicleModel(Section):
         meant = {name if name in known else suggestion(name, known) for name in fields}
         if not meant & {"airspeed", "airframe"}:
             yield Finding(("airspeed",), "is missing; add it, for example 'airspeed: 12 m/s'", at_key=True)
+        if fields.get("airspeed") == "free" and "airframe" not in meant:
+            yield Finding(("airspeed",), "to be free to choose asks for the vehicle's power; name its `airframe`")
 
 
 class CostModel(Section):
     """What the search adds up."""
 
-    expects: ClassVar[str] = "distance, angle, hybrid or time, or {name: hybrid, distance: 0.1, angle: 0.9},"
+    expects: ClassVar[str] = "distance, angle, hybrid, time or energy, or {name: hybrid, distance: 0.1, angle: 0.9},"
 
-    name: Literal["distance", "angle", "hybrid", "time"] = Field(
-        description="the cost; `cost: time` is short for `cost: {name: time}`", examples=["time"]
+    name: Literal["distance", "angle", "hybrid", "time", "energy"] = Field(
+        description="the cost; `cost: time` is short for `cost: {name: time}`. `energy` asks for an `airframe`",
+        examples=["time"],
     )
     distance: Weight = Field(default=0.1, description="weight of the distance; only with hybrid")
     angle: Weight = Field(default=0.9, description="weight of the angle to the wind; only with hybrid")
@@ -76,7 +83,7 @@ class CostModel(Section):
     def contradictions(cls, fields: Fields) -> Iterator[Finding]:
         """Weights of a cost that has none, or only zeros."""
         weights = [name for name in ("distance", "angle") if name in fields]
-        if fields.get("name") in ("distance", "angle", "time"):
+        if fields.get("name") in ("distance", "angle", "time", "energy"):
             for weight in weights:
                 yield Finding((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
         elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
@@ -154,6 +161,10 @@ _PLACE = "{latitude: 38.1, longitude: 23.7}"
 class MissionModel(Section):
     """A mission file."""
 
+    elsewhere: ClassVar[Mapping[str, str]] = {
+        name: "into `limits:`" for name in LimitsModel.model_fields if name != "wind"
+    }
+
     name: FileStem = Field(description="of the mission and of the files written", examples=["ridge-crossing"])
     vehicle: VehicleModel = Field(description="what flies", examples=["{airspeed: 12 m/s}"])
     terrain: TerrainModel = Field(
@@ -163,7 +174,11 @@ class MissionModel(Section):
     wind: WindModel = Field(description="exactly one of calm, constant, paper, forecast", examples=["{calm: true}"])
     start: SiteModel = Field(description="where the route begins", examples=[_PLACE])
     goal: SiteModel = Field(description="where the route ends", examples=[_PLACE])
-    via: tuple[SiteModel, ...] = Field(default=(), description="places to pass, in this order")
+    via: tuple[SiteModel, ...] = Field(default=(), description="places to pass on the way")
+    order: Literal["given", "free"] = Field(
+        default="given",
+        description="in which order `via` is passed: as it stands, or as costs least (12 places at most)",
+    )
     clearance: PositiveLength = Field(
         default=DEFAULT_CLEARANCE, description="smallest vertical distance of any leg to the ground"
     )
@@ -171,12 +186,10 @@ class MissionModel(Section):
         default="exact",
         description="whether a leg clears the ground: exactly, by the clearance, or by the paper's sampled test",
     )
-    max_height: PositiveLength | None = Field(default=None, description="largest height above ground of any leg")
     cost: CostModel = Field(default=CostModel(name="time"), description="what the route is to be the best in")
     graph: GraphModel = Field(default=GraphModel(uniform=UniformModel()), description="the nodes that are searched")
-    keep_out: tuple[AreaModel, ...] = Field(default=(), description="areas no leg enters")
-    keep_in: tuple[AreaModel, ...] = Field(default=(), description="areas no leg leaves")
-    fence: FenceModel = Field(default=FenceModel(), description="the autopilot's own fence; see `keep_out[].fence`")
+    limits: LimitsModel = Field(default=LimitsModel(), description="what the route must keep")
+    fence: FenceModel = Field(default=FenceModel(), description="the autopilot's own fence; see `limits.keep_out`")
     rally: tuple[SiteModel, ...] = Field(
         default=(), description="rally points: where the vehicle may return to in place of home"
     )

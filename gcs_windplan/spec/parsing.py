@@ -45,7 +45,7 @@ class MissionDocument:
     marks: Marks
 
     def place(self, field: str) -> tuple[int, int]:
-        """Line and column, from 1, of a field's value (`vehicle.airspeed`, `via.0`, `keep_out.1.polygon`).
+        """Line and column, from 1, of a field's value (`vehicle.airspeed`, `via.0`, `limits.keep_out.1.polygon`).
 
         That of the nearest section around it where the field itself is absent.
         """

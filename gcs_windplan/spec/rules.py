@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Final
 
 from gcs_windplan.spec.section import Fields, Finding, Path
@@ -18,6 +18,7 @@ DEFAULT_CLEARANCE: Final = 30.0  # [m]
 _SAME_DEGREES: Final = 1e-7  # about a centimetre, and MAVLink's resolution of a coordinate
 _SAME_METRES: Final = 0.01
 _LEAST_MARGIN: Final = 2.0  # [m] ArduPilot's FENCE_MARGIN; by as much ArduCopter cuts corners (measured)
+_MOST_TO_ORDER: Final = 12  # as in `ordering`
 _MOST_CORNERS: Final = 255  # ArduPilot counts them in one byte (AC_PolyFenceItem)
 
 
@@ -33,11 +34,11 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     """Everything that the sections of a mission say against each other."""
     limits = _Limits(
         CLEARANCE.read_or_none(fields.get("clearance", DEFAULT_CLEARANCE)),
-        CLEARANCE.read_or_none(fields.get("max_height")),
+        CLEARANCE.read_or_none(_section(fields, "limits").get("max_height")),
     )
     if limits.lowest is not None and limits.highest is not None and limits.lowest > limits.highest:
         yield Finding(
-            ("max_height",),
+            ("limits", "max_height"),
             f"{limits.highest:g} m is below the clearance of {limits.lowest:g} m; raise one, lower the other",
         )
     else:
@@ -47,8 +48,21 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     yield from _local_without_origin(fields)
     yield from _equal_neighbours(fields)
     yield from fence_contradictions(fields)
+    yield from _limits_without_measure(fields)
     if "robust" in fields and "members" not in _section(fields, "wind"):
         yield Finding(("robust",), "belongs only beside wind.members; leave it out", at_key=True)
+
+
+def _limits_without_measure(fields: Fields) -> Iterator[Finding]:
+    """Limits of what nobody would know: a battery without an airframe, gusts without a forecast."""
+    limits = _section(fields, "limits")
+    if "airframe" not in _section(fields, "vehicle"):
+        for name in ("battery", "reserve"):
+            if name in limits:
+                text = "needs vehicle.airframe, which says what the battery holds and what flying takes"
+                yield Finding(("limits", name), text, at_key=True)
+    if "gust" in limits and "forecast" not in _section(fields, "wind"):
+        yield Finding(("limits", "gust"), "needs wind.forecast; no other wind has gusts", at_key=True)
 
 
 def _layers_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
@@ -75,7 +89,7 @@ def _outside(height: float, limits: _Limits) -> str | None:
     if limits.lowest is not None and height < limits.lowest:
         return f"{height:g} m is below the clearance of {limits.lowest:g} m that every leg keeps"
     if limits.highest is not None and height > limits.highest:
-        return f"{height:g} m is above max_height, {limits.highest:g} m"
+        return f"{height:g} m is above limits.max_height, {limits.highest:g} m"
     return None
 
 
@@ -95,11 +109,10 @@ def _local_without_origin(fields: Fields) -> Iterator[Finding]:
             yield from _local_place(("obstacles", index, "at"), _section(obstacle, "at"), advice)
         else:
             yield Finding(("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}")
-    for kind in ("keep_out", "keep_in"):
-        for index, area in _entries(fields, kind):
-            if "east_north" in _section(area, "polygon"):
-                yield Finding((kind, index, "polygon", "east_north"), advice, at_key=True)
-            yield from _local_place((kind, index, "circle"), _section(area, "circle"), advice)
+    for path, area in _areas(fields):
+        if "east_north" in _section(area, "polygon"):
+            yield Finding((*path, "polygon", "east_north"), advice, at_key=True)
+        yield from _local_place((*path, "circle"), _section(area, "circle"), advice)
 
 
 def _local_place(path: Path, place: Fields, advice: str) -> Iterator[Finding]:
@@ -109,9 +122,18 @@ def _local_place(path: Path, place: Fields, advice: str) -> Iterator[Finding]:
 
 
 def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
-    """Sites that follow each other at the same place; the goal comes last."""
+    """Sites at the same place that follow each other, or may do so in another order; the goal comes last."""
     sites = [(path, _position(site)) for path, site in _sites(fields)]
-    for (before, here), (path, there) in pairwise(sites):
+    if fields.get("order") == "free" and len(sites) > 3:
+        if len(sites) - 2 > _MOST_TO_ORDER:
+            text = (
+                f"{len(sites) - 2} places are more than the {_MOST_TO_ORDER} that can be put in order; give the order"
+            )
+            yield Finding(("order",), text)
+        pairs = [pair for pair in combinations(sites, 2) if pair != (sites[0], sites[-1])]
+    else:
+        pairs = list(pairwise(sites))
+    for (before, here), (path, there) in pairs:
         if here and there and _same(here, there):
             name = ".".join(str(part) for part in before)
             yield Finding(path, f"is the same place as {name}; there is nothing to fly in between")
@@ -151,17 +173,12 @@ def _beside(fields: Fields) -> Iterator[tuple[Path, Fields]]:
 
 def fence_contradictions(fields: Fields) -> Iterator[Finding]:
     """What the autopilot's fence cannot hold, and what would not reach the vehicle."""
-    fenced = [
-        ((kind, index), area)
-        for kind in ("keep_out", "keep_in")
-        for index, area in _entries(fields, kind)
-        if area.get("fence") is True
-    ]
+    fenced = [(path, area) for path, area in _areas(fields) if area.get("fence") is True]
     for path, area in fenced:
         yield from _unfit_for_fence(path, area, fields)
     back = "return_point" in _section(fields, "fence")
     if back and not fenced:
-        advice = "there is no fence to return from: mark a keep_out or keep_in area with 'fence: true'"
+        advice = "there is no fence to return from: mark an area in limits with 'fence: true'"
         yield Finding(("fence", "return_point"), advice, at_key=True)
     if (fenced or back or fields.get("rally")) and _section(fields, "export").get("plan") is False:
         yield Finding(("export", "plan"), "fence and rally points fit only into a .plan file: leave this out")
@@ -169,7 +186,7 @@ def fence_contradictions(fields: Fields) -> Iterator[Finding]:
 
 def _unfit_for_fence(path: Path, area: Fields, fields: Fields) -> Iterator[Finding]:
     """An area that the fence would hold otherwise than the file says."""
-    for limit in ("floor", "ceiling") if path[0] == "keep_out" else ():
+    for limit in ("floor", "ceiling") if "keep_out" in path else ():
         if limit in area:
             text = f"a fence has no heights and would forbid what lies beyond the {limit} too"
             yield Finding((*path, limit), f"{text}: leave out either this or 'fence: true'", at_key=True)
@@ -190,6 +207,13 @@ def _corners(area: Fields) -> int:
     if isinstance(polygon, Mapping):
         polygon = next((polygon[name] for name in ("latitude_longitude", "east_north") if name in polygon), None)
     return len(polygon) if isinstance(polygon, list | tuple) else 0
+
+
+def _areas(fields: Fields) -> Iterator[tuple[Path, Fields]]:
+    """The areas to keep out of, then those to keep in."""
+    for kind in ("keep_out", "keep_in"):
+        for index, area in _entries(_section(fields, "limits"), kind):
+            yield ("limits", kind, index), area
 
 
 def _layers(fields: Fields) -> Iterator[tuple[int, float | None]]:

@@ -42,6 +42,7 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     expects: ClassVar[str] = ""
+    elsewhere: ClassVar[Mapping[str, str]] = {}  # fields that are looked for here, and where they stand, in words
 
     @classmethod
     def expanded(cls, data: object) -> object:
@@ -161,8 +162,12 @@ def _missing(name: str, section: type[Section]) -> str:
 
 
 def _unknown(name: str, section: type[Section]) -> str:
+    if name in section.elsewhere:
+        return f"unknown field; write it {section.elsewhere[name]}"
     known = known_fields(section)
-    close = suggestion(name, known)
+    close = suggestion(name, [*known, *section.elsewhere])
+    if close is not None and close in section.elsewhere:
+        return f"unknown field; did you mean '{close}'? Write it {section.elsewhere[close]}"
     return f"unknown field; did you mean '{close}'?" if close else f"unknown field; known fields: {', '.join(known)}"
 
 

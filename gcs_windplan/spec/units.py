@@ -15,7 +15,7 @@ from gcs_windplan.constants import INTERNATIONAL_FOOT, KNOT, NAUTICAL_MILE, STAT
 class Quantity:
     """A kind of quantity: name with article, the unit kept inside, an example and what each unit is worth.
 
-    A quantity without units (`unit` empty) is a plain number.
+    A number or a share has no unit of its own (`unit` empty).
     """
 
     name: str
@@ -29,6 +29,7 @@ _MINUTE: Final = 60.0
 _POUND: Final = 0.45359237  # [kg] NIST SP 811, B.6
 
 NUMBER: Final = Quantity("a number", "", "0.5", MappingProxyType({}))
+SHARE: Final = Quantity("a share", "", "0.3 or 30 %", MappingProxyType({"%": 0.01}))
 SPEED: Final = Quantity(
     "a speed",
     "m/s",
@@ -70,10 +71,10 @@ ENERGY: Final = Quantity(
 POWER: Final = Quantity("a power", "W", "450 W", MappingProxyType({"W": 1.0, "kW": 1e3}))
 DENSITY: Final = Quantity("a density", "kg/m3", "1.225 kg/m3", MappingProxyType({"kg/m3": 1.0, "kg/m³": 1.0}))
 ACCELERATION: Final = Quantity("an acceleration", "m/s2", "2.5 m/s2", MappingProxyType({"m/s2": 1.0, "m/s²": 1.0}))
-QUANTITIES: Final = (SPEED, LENGTH, ANGLE, TIME, AREA, MASS, ENERGY, POWER, DENSITY, ACCELERATION)
+QUANTITIES: Final = (SHARE, SPEED, LENGTH, ANGLE, TIME, AREA, MASS, ENERGY, POWER, DENSITY, ACCELERATION)
 
 _WRITTEN: Final = re.compile(
-    r"\s*([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(|[A-Za-z°,].*?)\s*", re.DOTALL
+    r"\s*([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(|[A-Za-z°%,].*?)\s*", re.DOTALL
 )
 _DECIMAL_COMMA: Final = re.compile(r"\s*[-+]?[0-9]+,[0-9]+(?![0-9,])")
 
@@ -131,7 +132,7 @@ def _unit_problem(text: str, unit: str, wanted: Quantity) -> str:
 
 
 def _advice(quantity: Quantity) -> str:
-    if not quantity.units:
+    if not quantity.unit:
         return f"write for example {quantity.example}"
     return f"write for example {quantity.example}, or a plain number in {quantity.unit}"
 

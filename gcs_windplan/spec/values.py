@@ -25,7 +25,9 @@ from gcs_windplan.spec.units import (
     MASS,
     NUMBER,
     POWER,
+    SHARE,
     SPEED,
+    TIME,
     Quantity,
     read_quantity,
     shown,
@@ -114,8 +116,30 @@ class Measure(Checked):
         return " and ".join(f"{word} {bound:g}{mark}" for word, bound in words.items() if bound is not None)
 
     def _converted(self, value: object, number: float) -> str:
+        if self.quantity is SHARE and isinstance(value, int | float) and 1 < value <= 100:
+            return f"; a percentage is written {value:g} %"
         foreign = isinstance(value, str) and not value.strip().endswith(f" {self.quantity.unit}")
         return f" ({number:.6g} {self.quantity.unit})" if foreign and self.quantity.unit else ""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureOr(Checked):
+    """A measure, or a word in its place."""
+
+    measure: Measure
+    word: str
+
+    def read(self, value: object) -> float | str:
+        """The measure's value, or the word."""
+        return self.word if value == self.word else self.measure.read(value)
+
+    def describe(self) -> str:
+        """Both."""
+        return f"{self.measure.describe()}; or `{self.word}`"
+
+    def json_schema(self) -> dict[str, Any]:
+        """Both."""
+        return {"anyOf": [{"const": self.word}, *self.measure.json_schema()["anyOf"]]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,6 +255,8 @@ CLEARANCE: Final = Measure(LENGTH, above=0, at_most=_FARTHEST)
 HEIGHT: Final = Measure(LENGTH, at_least=0, at_most=_FARTHEST)
 SIGNED_LENGTH: Final = Measure(LENGTH, at_least=-_FARTHEST, at_most=_FARTHEST)
 AIRSPEED: Final = Measure(SPEED, at_least=0.1, at_most=150)
+FREE: Final = "free"
+AIRSPEED_OR_FREE: Final = MeasureOr(AIRSPEED, FREE)
 LATITUDE: Final = Measure(ANGLE, at_least=-90, at_most=90)
 LONGITUDE: Final = Measure(ANGLE, at_least=-180, at_most=180)
 WEIGHT: Final = Measure(NUMBER, at_least=0)
@@ -245,14 +271,16 @@ PositiveLength = Annotated[float, CLEARANCE]
 Speed = Annotated[float, Measure(SPEED, at_least=0)]
 PositiveSpeed = Annotated[float, Measure(SPEED, above=0)]
 Airspeed = Annotated[float, AIRSPEED]
+AirspeedOrFree = Annotated[float | str, AIRSPEED_OR_FREE]
 Latitude = Annotated[float, LATITUDE]
 Longitude = Annotated[float, LONGITUDE]
+LongTime = Annotated[float, Measure(TIME, at_least=60, at_most=86_400)]  # a plain 5 was meant in minutes
 Direction = Annotated[float, Measure(ANGLE, at_least=0, at_most=360)]
 Number = Annotated[float, Measure(NUMBER)]
 Weight = Annotated[float, WEIGHT]
 Exponent = Annotated[float, Measure(NUMBER, at_least=0, at_most=1)]
-Share = Annotated[float, Measure(NUMBER, above=0, at_most=1)]
-Reserve = Annotated[float, Measure(NUMBER, at_least=0, at_most=0.9)]
+Share = Annotated[float, Measure(SHARE, above=0, at_most=1)]
+Reserve = Annotated[float, Measure(SHARE, at_least=0, at_most=0.9)]
 Coefficient = Annotated[float, Measure(NUMBER, at_least=0)]
 PositiveNumber = Annotated[float, Measure(NUMBER, above=0)]
 PositiveArea = Annotated[float, Measure(AREA, above=0)]

@@ -16,7 +16,7 @@ class Battery:
 
     capacity: float  # [J] from full to empty
     usable: float = 0.8  # share of the capacity that may be drawn at all
-    reserve: float = 0.2  # share of the usable energy that a mission leaves, where it does not say how much
+    reserve: float = 0.2  # share of the usable energy that a mission leaves; its limits may ask for more
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.capacity) and self.capacity > 0):

@@ -2,8 +2,8 @@
 
 from gcs_windplan.veil.airspace import Airspace, Prism
 from gcs_windplan.veil.clearance import BREACHES, Clearance, CollisionTest
-from gcs_windplan.veil.grid import GridVeil, breaches_around, grid_steps, lay_grid
-from gcs_windplan.veil.prm import SHARE_OF_GRID, PrmVeil, lay_prm, roadmap_radius
+from gcs_windplan.veil.grid import GridVeil, Judge, breaches_around, grid_steps, lay_grid, without_legs
+from gcs_windplan.veil.prm import SHARE_OF_GRID, PrmVeil, lay_prm, roadmap_radius, without_pairs
 
 __all__ = [
     "BREACHES",
@@ -12,6 +12,7 @@ __all__ = [
     "Clearance",
     "CollisionTest",
     "GridVeil",
+    "Judge",
     "Prism",
     "PrmVeil",
     "breaches_around",
@@ -19,4 +20,6 @@ __all__ = [
     "lay_grid",
     "lay_prm",
     "roadmap_radius",
+    "without_legs",
+    "without_pairs",
 ]

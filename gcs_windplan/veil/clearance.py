@@ -19,14 +19,16 @@ TOO_HIGH: Final = 4
 OBSTACLE: Final = 8
 AIRSPACE: Final = 16
 OUTSIDE: Final = 32
+TOO_WINDY: Final = 64  # of edges that a search found closed: none of the rules below knows of wind
 
 BREACHES: Final = {
     TOO_LOW: "terrain (closer to the ground than the clearance)",
     UNKNOWN_GROUND: "unknown ground (no data in the terrain, or outside of it)",
-    TOO_HIGH: "height limit (higher above ground than max_height)",
+    TOO_HIGH: "height limit (higher above ground than limits.max_height)",
     OBSTACLE: "obstacle (closer than its margin)",
     AIRSPACE: "keep-out or keep-in area",
     OUTSIDE: "edge of the area (the sites' box with graph.margin)",
+    TOO_WINDY: "wind limit",
 }
 
 CollisionTest: TypeAlias = Literal["exact", "paper"]

@@ -16,9 +16,9 @@ To the layers above and below it has the node straight over it and that one's 8 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -26,10 +26,13 @@ from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray, Mask
 from gcs_windplan.cores import spread
 from gcs_windplan.errors import InputError
 from gcs_windplan.terrain import Extent
-from gcs_windplan.veil.clearance import Clearance
+from gcs_windplan.veil.clearance import TOO_WINDY, Clearance
 
 _BATCH = 100_000  # legs judged at a time, so that memory stays bounded
 NEIGHBOURS: Final = (8, 16, 32, 64)
+
+#: Says of legs, starts and ends (n, 3), which are closed (n,).
+Judge: TypeAlias = Callable[[FloatArray, FloatArray], BoolArray]
 
 
 def grid_steps(neighbours: int, layered: bool) -> IntArray:
@@ -167,14 +170,39 @@ def _legs(corner: FloatArray, spacing: float, heights: FloatArray, strip: _Strip
 
 def breaches_around(veil: GridVeil, nodes: IntArray) -> tuple[IntArray, FlagArray]:
     """All legs that leave the given nodes: where they lead and what they break (0 where they are clear)."""
+    led, flags = [], []
+    for step, away, to in _leaving(veil, nodes):
+        broken = veil.clearance.breaches(veil.points_of(away), veil.points_of(to))
+        owner, bit = _bit(veil, step, away, to)
+        led.append(to)
+        flags.append(np.where((broken == 0) & (veil.legal[owner] & bit == 0), TOO_WINDY, broken).astype(np.uint8))
+    return np.concatenate(led), np.concatenate(flags)
+
+
+def without_legs(veil: GridVeil, nodes: IntArray, closed: Judge) -> GridVeil:
+    """The veil without those edges of the given nodes that are closed in the direction away from them."""
+    legal = veil.legal.copy()
+    for step, away, to in _leaving(veil, nodes):
+        owner, bit = _bit(veil, step, away, to)
+        known = np.flatnonzero(legal[owner] & bit)
+        shut = known[closed(veil.points_of(away[known]), veil.points_of(to[known]))]
+        legal[owner[shut]] &= ~bit
+    return replace(veil, legal=legal)
+
+
+def _leaving(veil: GridVeil, nodes: IntArray) -> Iterator[tuple[int, IntArray, IntArray]]:
+    """For each step its number, the nodes from which it stays within the grid, and where it leads from there."""
     layers, rows, columns = veil.heights.shape
     layer, row, column = nodes // (rows * columns), (nodes // columns) % rows, nodes % columns
-    led, flags = [], []
-    for up, north, east in veil.steps:
+    for step, (up, north, east) in enumerate(veil.steps):
         to_layer, to_row, to_column = layer + up, row + north, column + east
         within = (to_layer >= 0) & (to_layer < layers) & (to_row >= 0) & (to_row < rows)
         within &= (to_column >= 0) & (to_column < columns)
-        to = ((to_layer * rows + to_row) * columns + to_column)[within]
-        led.append(to)
-        flags.append(veil.clearance.breaches(veil.points_of(nodes[within]), veil.points_of(to)))
-    return np.concatenate(led), np.concatenate(flags)
+        yield step, nodes[within], ((to_layer * rows + to_row) * columns + to_column)[within]
+
+
+def _bit(veil: GridVeil, step: int, away: IntArray, to: IntArray) -> tuple[IntArray, np.unsignedinteger[Any]]:
+    """Which nodes' bit says that a step is an edge, and the bit: the one that undoes it has the other end's."""
+    half = len(veil.steps) // 2
+    bit: np.unsignedinteger[Any] = veil.legal.dtype.type(1 << (step % half))
+    return (away if step < half else to), bit

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gcs_windplan.arrays import FlagArray, FloatArray, IntArray
 from gcs_windplan.terrain import Extent
-from gcs_windplan.veil.clearance import Clearance
+from gcs_windplan.veil.clearance import TOO_WINDY, Clearance
+from gcs_windplan.veil.grid import Judge
 
 #: The paper gives the roadmap three quarters of the uniform grid's nodes.
 SHARE_OF_GRID = 0.75
@@ -78,6 +79,19 @@ def lay_prm(
     flags = clearance.breaches(points[pairs[:, 0]], points[pairs[:, 1]])
     first, neighbours = _join(len(points), pairs[flags == 0])
     return PrmVeil(points, first, neighbours, radius, pairs, flags, clearance)
+
+
+def without_pairs(veil: PrmVeil, nodes: IntArray, closed: Judge) -> PrmVeil:
+    """The roadmap without those edges of the given nodes that are closed in either direction."""
+    chosen = np.zeros(veil.size, dtype=np.bool_)
+    chosen[nodes] = True
+    a, b = veil.pairs[:, 0], veil.pairs[:, 1]
+    known = np.flatnonzero((veil.flags == 0) & (chosen[a] | chosen[b]))
+    there, back = veil.points[a[known]], veil.points[b[known]]
+    flags = veil.flags.copy()
+    flags[known[closed(there, back) | closed(back, there)]] = TOO_WINDY
+    first, neighbours = _join(veil.size, veil.pairs[flags == 0])
+    return replace(veil, first=first, neighbours=neighbours, flags=flags)
 
 
 def _join(size: int, pairs: IntArray) -> tuple[IntArray, IntArray]:

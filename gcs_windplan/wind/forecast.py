@@ -22,7 +22,7 @@ from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import pairing
 from gcs_windplan.wind.field import Ground
 from gcs_windplan.wind.files.anyfile import open_catalogue
-from gcs_windplan.wind.gridded import GriddedWind
+from gcs_windplan.wind.gridded import GriddedWind, mean_of
 from gcs_windplan.wind.model_levels import heights_of_levels
 from gcs_windplan.wind.pairing import Members, Pair, Span, Winds, say_time
 from gcs_windplan.wind.placement import Box, Part, axes_directions, part_of
@@ -81,12 +81,7 @@ class Forecast:
         """The mean of all members: winds and heights averaged."""
         if len(self.fields) == 1:
             return self.fields[0]
-        parts = [one.columns for one in self.fields]
-        columns = parts[0]._replace(
-            winds=np.mean([part.winds for part in parts], axis=0),
-            heights=np.mean([part.heights for part in parts], axis=0),
-        )
-        return replace(self.fields[0], name=f"{self.name}, mean of {len(self.fields)} members", columns=columns)
+        return replace(mean_of(self.fields), name=f"{self.name}, mean of {len(self.fields)} members")
 
 
 def read_forecast(paths: Sequence[Path | str], wanted: Wanted) -> Forecast:

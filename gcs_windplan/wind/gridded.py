@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -136,6 +136,16 @@ def at_members(members: Sequence[GriddedWind], points: FloatArray, seconds: floa
     ground = ground_under(one.ground, points)
     turned = [to_grid(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
     return np.concatenate(turned, axis=1)
+
+
+def mean_of(members: Sequence[GriddedWind]) -> GriddedWind:
+    """The mean of members: winds and heights averaged; all else is the first one's."""
+    parts = [one.columns for one in members]
+    columns = parts[0]._replace(
+        winds=np.mean([part.winds for part in parts], axis=0),
+        heights=np.mean([part.heights for part in parts], axis=0),
+    )
+    return replace(members[0], columns=columns)
 
 
 def ground_under(ground: Ground | None, points: FloatArray) -> FloatArray:

@@ -22,7 +22,8 @@ wind:
 start: {east: -600, north: 0}
 goal: {east: 600, north: 50}
 clearance: 30 m
-max_height: 120 m
+limits:
+  max_height: 120 m
 graph:
   uniform: {spacing: 50 m}
 """
@@ -67,7 +68,9 @@ def test_plan_writes_everything(tmp_path):
 
 def test_a_fence_goes_into_the_plan_and_the_other_file_is_said_to_lack_it(tmp_path):
     square = {"name": "field", "polygon": {"east_north": [[-800, -800], [800, -800], [800, 800], [-800, 800]]}}
-    path = mission(tmp_path, keep_in=[{**square, "fence": True}], rally=[{"east": 0, "north": -300, "height": "60 m"}])
+    path = mission(
+        tmp_path, limits={"keep_in": [{**square, "fence": True}]}, rally=[{"east": 0, "north": -300, "height": "60 m"}]
+    )
     done = run("plan", path, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     folder = tmp_path / "out" / "small"
@@ -181,7 +184,7 @@ BAD = {
         "start",
     ),
     "goal in a keep-out": (
-        lambda d: {"keep_out": [{"name": "school", "polygon": {"east_north": SQUARE}}]},
+        lambda d: {"limits": {"keep_out": [{"name": "school", "polygon": {"east_north": SQUARE}}]}},
         "'school' forbids it",
         "goal",
     ),
@@ -191,7 +194,7 @@ BAD = {
     "clearance above the limit": (
         lambda d: {"clearance": "200 m"},
         "120 m is below the clearance",
-        "max_height",
+        "limits.max_height",
     ),
     "airspeed 0": (lambda d: {"vehicle": {"airspeed": 0}}, "between 0.1 and 150 m/s", "vehicle.airspeed"),
     "negative weight": (

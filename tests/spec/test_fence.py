@@ -32,15 +32,21 @@ from .missions import FIELDS, complaints, mission
 
 GROUND = "{surface: {size: 4 km, cell: 50 m}, origin: {latitude: 47.0, longitude: 9.0, altitude: 600}}"
 SQUARE = "{east_north: [[-900, -900], [900, -900], [900, 900], [-900, 900]]}"
+FENCED = f"[{{name: field, polygon: {SQUARE}, fence: true}}]"
 WORLD = {
     **FIELDS,
     "terrain": GROUND,
     "start": "{east: -700, north: -700}",
     "goal": "{east: 700, north: 700}",
     "graph": "{uniform: {spacing: 100}}",
-    "keep_in": f"[{{name: field, polygon: {SQUARE}, fence: true}}]",
+    "limits": f"{{keep_in: {FENCED}}}",
 }
 one_millimetre = 1e-3
+
+
+def areas(keep_out: str = "[]", keep_in: str = FENCED) -> str:
+    """The limits of a mission file with these areas."""
+    return f"{{keep_out: {keep_out}, keep_in: {keep_in}}}"
 
 
 def asked(folder: Path, **fields: str | None) -> Request:
@@ -58,8 +64,10 @@ def refusals(folder: Path, **fields: str | None) -> list[str]:
 def test_areas_become_the_fence_only_where_they_are_marked(tmp_path: Path) -> None:
     request = asked(
         tmp_path,
-        keep_out="[{name: mast, circle: {east: 0, north: 0, radius: 80}, fence: true},"
-        " {name: field, circle: {east: 500, north: 0, radius: 80}}]",
+        limits=areas(
+            "[{name: mast, circle: {east: 0, north: 0, radius: 80}, fence: true},"
+            " {name: field, circle: {east: 500, north: 0, radius: 80}}]"
+        ),
     )
     mast, field = request.fence
     assert (mast.name, mast.radius, mast.inclusion, mast.heights_lost) == ("mast", 80.0, False, False)
@@ -72,7 +80,7 @@ def test_areas_become_the_fence_only_where_they_are_marked(tmp_path: Path) -> No
 def test_the_mission_carries_fence_return_point_and_rally_points(tmp_path: Path) -> None:
     request = asked(
         tmp_path,
-        keep_out="[{name: mast, circle: {latitude: 47.001, longitude: 9.0015, radius: 80}, fence: true}]",
+        limits=areas("[{name: mast, circle: {latitude: 47.001, longitude: 9.0015, radius: 80}, fence: true}]"),
         fence="{return_point: {east: -600, north: -600, height: 45}}",
         rally="[{latitude: 47.0012345, longitude: 8.9976543}, {east: 400, north: 500, altitude: 655.5}]",
     )
@@ -105,14 +113,14 @@ def test_px4_keeps_fractions_of_a_metre(tmp_path: Path) -> None:
 
 
 def test_without_marks_there_is_no_fence(tmp_path: Path) -> None:
-    request = asked(tmp_path, keep_in=f"[{{name: field, polygon: {SQUARE}}}]")
+    request = asked(tmp_path, limits=f"{{keep_in: [{{name: field, polygon: {SQUARE}}}]}}")
     assert (request.fence, request.rally, request.fence_return) == ((), (), None)
     mission = mission_of(gw.plan_route(request))
     assert (mission.fence, mission.rally) == (None, ())
 
 
 def test_a_keep_in_with_heights_is_held_in_plan_and_the_pilot_is_told(tmp_path: Path) -> None:
-    request = asked(tmp_path, keep_in=f"[{{name: field, polygon: {SQUARE}, ceiling: 900, fence: true}}]")
+    request = asked(tmp_path, limits=areas(keep_in=f"[{{name: field, polygon: {SQUARE}, ceiling: 900, fence: true}}]"))
     plan = gw.plan_route(request)
     (note,) = plan.notes
     assert note == (
@@ -125,12 +133,12 @@ def test_what_cannot_reach_the_vehicle_is_refused() -> None:
     fenced = f"[{{name: a, polygon: {square}, fence: true}}]"
     rally = "[{latitude: 36.5, longitude: -84.3}]"
     line = "8:16: export.plan: fence and rally points fit only into a .plan file: leave this out"
-    assert complaints(mission(keep_in=fenced, export="{plan: false}")) == [line]
+    assert complaints(mission(limits=areas(keep_in=fenced), export="{plan: false}")) == [line]
     assert complaints(mission(rally=rally, export="{plan: false}")) == [line]
     corners = [[36.5 + 0.1 * math.cos(a), -84.3 + 0.1 * math.sin(a)] for a in np.linspace(0, 2 * math.pi, 256)]
-    many = {"keep_in": f"[{{name: a, polygon: {[*corners, [36.5, -84.3]]}, fence: true}}]"}
-    text = "7:30: keep_in.0.polygon: 257 corners are more than the 255 of ArduPilot's fence polygons: simplify it"
-    assert complaints(mission(**many)) == [text]
+    many = {"limits": f"{{keep_in: [{{name: a, polygon: {[*corners, [36.5, -84.3]]}, fence: true}}]}}"}
+    text = "257 corners are more than the 255 of ArduPilot's fence polygons: simplify it"
+    assert complaints(mission(**many)) == [f"7:39: limits.keep_in.0.polygon: {text}"]
     assert complaints(mission(**many, vehicle="{airspeed: 9, autopilot: px4, speed: 5}")) == [
         "2:40: vehicle.speed: unknown field; did you mean 'airspeed'?"  # and nothing of the fence
     ]
@@ -151,12 +159,12 @@ def test_what_cannot_reach_the_vehicle_is_refused() -> None:
     ],
 )
 def test_rally_points_lie_inside_the_fence_and_over_known_ground(tmp_path: Path, rally: str, line: str) -> None:
-    areas = (
+    places = (
         "[{name: mast, circle: {east: 0, north: 0, radius: 80}, fence: true},"
         " {name: wires, circle: {east: -300, north: 0, radius: 50}, ceiling: 630}]"
     )
-    (found,) = refusals(tmp_path, keep_out=areas, rally=f"[{rally}]")
-    assert found.startswith(f"10:9: rally.0: {line}")
+    (found,) = refusals(tmp_path, limits=areas(places), rally=f"[{rally}]")
+    assert found.startswith(f"9:9: rally.0: {line}")
 
 
 def test_the_return_point_lies_inside_the_fence_too(tmp_path: Path) -> None:
@@ -166,14 +174,14 @@ def test_the_return_point_lies_inside_the_fence_too(tmp_path: Path) -> None:
 
 def test_a_fixed_wing_circles_over_its_rally_point_and_does_not_land(tmp_path: Path) -> None:
     wires = "[{name: wires, circle: {east: -300, north: 0, radius: 50}, ceiling: 630}]"
-    plane = {"vehicle": "{airspeed: 12, type: fixed-wing}", "keep_out": wires, "finish": "hold"}
+    plane = {"vehicle": "{airspeed: 12, type: fixed-wing}", "limits": areas(wires), "finish": "hold"}
     plan = gw.plan_route(asked(tmp_path, **plane, rally="[{east: -300, north: 0, height: 60}]"))
     assert len(mission_of(plan).rally) == 1
 
 
 def test_the_flight_back_to_a_rally_point_is_looked_at_too(tmp_path: Path) -> None:
     wall = "[{name: wall, polygon: {east_north: [[0, 200], [850, 200], [850, 260], [0, 260]]}}]"
-    fields = {"keep_out": wall, "finish": "return", "start": "{east: -700, north: 700}"}
+    fields = {"limits": areas(wall), "finish": "return", "start": "{east: -700, north: 700}"}
     good = asked(tmp_path, **fields, rally="[{east: -600, north: 600}]")
     notes = gw.plan_route(good).notes
     assert "at the end the vehicle returns to the rally point nearest to it, or home if that is nearer." in notes
@@ -283,8 +291,9 @@ def test_areas_outside_of_the_fence_stay_as_they_were_drawn() -> None:
 
 
 def test_a_circle_narrower_than_its_margin(tmp_path: Path) -> None:
-    with pytest.raises(MissionFileError, match=r"8:29: keep_in\.0\.circle: area 'a' is too narrow for a margin of 5 m"):
-        asked(tmp_path, keep_in="[{name: a, circle: {east: 0, north: 0, radius: 5}}]", clearance="30", max_height="99")
+    limits = "{keep_in: [{name: a, circle: {east: 0, north: 0, radius: 5}}], max_height: 99}"
+    with pytest.raises(MissionFileError, match=r"8:38: limits\.keep_in\.0\.circle: area 'a' is too narrow"):
+        asked(tmp_path, clearance="30", limits=limits)
 
 
 def test_a_fence_across_the_date_line_is_refused() -> None:

@@ -108,7 +108,7 @@ wind:
 start: {east: 0, north: 0}
 goal: {latitude: 95, longitude: 1}
 clearance: 130
-max_height: 120
+limits: {max_height: 120}
 graph:
   layers: [40, 30]
 keepout: 3
@@ -123,9 +123,9 @@ departure:
         "12:12: wind.constant.speed: unknown unit 'kmh' for a speed; known units: " + ", ".join(SPEED.units),
         f"13:9: start.east: {NEEDS_ORIGIN}",
         "14:18: goal.latitude: must be between -90 and 90 deg, not 95",
-        "16:13: max_height: 120 m is below the clearance of 130 m; raise one, lower the other",
+        "16:22: limits.max_height: 120 m is below the clearance of 130 m; raise one, lower the other",
         "18:16: graph.layers.1: layers go upwards: 30 m is not above 40 m",
-        "19:1: keepout: unknown field; did you mean 'keep_out'?",
+        "19:1: keepout: unknown field; did you mean 'keep_out'? Write it into `limits:`",
         "20:11: departure: is empty; give it a value or leave the field out",
     ]
 
@@ -139,10 +139,12 @@ def test_a_problem_holds_its_place_as_data() -> None:
 
 
 def test_layers_and_sites_above_the_largest_height() -> None:
-    text = mission(start="{latitude: 1, longitude: 2, height: 130}", max_height="120", graph="{layers: [90, 400 ft]}")
+    text = mission(
+        start="{latitude: 1, longitude: 2, height: 130}", limits="{max_height: 120}", graph="{layers: [90, 400 ft]}"
+    )
     assert complaints(text) == [
-        "5:44: start.height: 130 m is above max_height, 120 m",
-        "8:22: graph.layers.1: 121.92 m is above max_height, 120 m",
+        "5:44: start.height: 130 m is above limits.max_height, 120 m",
+        "8:22: graph.layers.1: 121.92 m is above limits.max_height, 120 m",
     ]
 
 

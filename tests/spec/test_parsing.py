@@ -42,22 +42,25 @@ via:
   - {latitude: 38.15, longitude: 23.75, altitude: -3}
   - {east: 100, north: 2 nmi}
 clearance: 40
-max_height: 120 m
 cost: {name: hybrid, angle: 0}
 graph:
   prm: {nodes: 3000, seed: 7, radius: 400 m}
   layers: [40 m, 70, 0.1 km]
   margin: 1 km
-keep_out:
-  - name: school
-    polygon: [[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]
-    floor: 0
-    ceiling: 500 m
-  - name: airfield
-    polygon:
-      east_north: [[0, 0], [100, 0], [0, 0.1 km]]
-keep_in:
-  - {name: all, polygon: [[38, 23], [39, 23], [39, 24], [38, 24]]}
+limits:
+  keep_out:
+    - name: school
+      polygon: [[38.1, 23.7], [38.2, 23.7], [38.2, 23.8]]
+      floor: 0
+      ceiling: 500 m
+    - name: airfield
+      polygon:
+        east_north: [[0, 0], [100, 0], [0, 0.1 km]]
+  keep_in:
+    - {name: all, polygon: [[38, 23], [39, 23], [39, 24], [38, 24]]}
+  wind: 20 kt
+  max_height: 120 m
+  way_home: true
 departure: 2026-05-01 08:00 +02:00
 finish: return
 export: {speed_changes: false, altitude: amsl, waypoints: true, plan: false}
@@ -83,8 +86,10 @@ def test_a_mission_with_every_field() -> None:
     assert (model.cost.name, model.cost.distance, model.cost.angle) == ("hybrid", 0.1, 0)
     assert model.graph.layers == (40, 70, 100)
     assert model.graph.uniform is None
-    assert model.keep_out[0].polygon.latitude_longitude == ((38.1, 23.7), (38.2, 23.7), (38.2, 23.8))
-    assert model.keep_out[1].polygon.east_north == ((0, 0), (100, 0), (0, 100))
+    assert model.limits.keep_out[0].polygon.latitude_longitude == ((38.1, 23.7), (38.2, 23.7), (38.2, 23.8))
+    assert model.limits.keep_out[1].polygon.east_north == ((0, 0), (100, 0), (0, 100))
+    assert model.limits.wind == pytest.approx(10.288888888888889)
+    assert (model.limits.max_height, model.limits.way_home, model.limits.battery) == (120, True, None)
     assert model.departure == datetime(2026, 5, 1, 6, tzinfo=UTC)
 
 
@@ -92,12 +97,19 @@ def test_defaults() -> None:
     model = read().model
     assert (model.vehicle.type, model.vehicle.autopilot) == ("multicopter", "ardupilot")
     assert (model.vehicle.climb, model.vehicle.descent, model.vehicle.speed_model) == (2.5, 1.5, "triangle")
-    assert (model.clearance, model.max_height, model.departure) == (30, None, None)
+    assert (model.clearance, model.limits.max_height, model.departure) == (30, None, None)
     assert (model.cost.name, model.finish) == ("time", "land")
     assert model.graph.uniform is not None
     assert (model.graph.uniform.spacing, model.graph.uniform.neighbours) == (None, 16)
     assert (model.export.altitude, model.export.speed_changes) == ("relative", True)
-    assert (model.via, model.obstacles, model.keep_out, model.keep_in) == ((), (), (), ())
+    assert (model.via, model.obstacles, model.limits.keep_out, model.limits.keep_in) == ((), (), (), ())
+
+
+def test_limits_of_the_battery_and_of_gusts() -> None:
+    frame, forecast = "{airframe: quadcopter.yaml}", "{forecast: w.nc}"
+    limits = read(vehicle=frame, wind=forecast, limits="{gust: 14, battery: 30 %, reserve: 5 min}").model.limits
+    assert (limits.gust, limits.battery, limits.reserve) == (14, 0.3, 300)
+    assert read(vehicle=frame, limits="{battery: 0.3, reserve: 90}").model.limits.battery == 0.3
 
 
 GOOD = [
@@ -122,11 +134,13 @@ GOOD = [
     ("graph", "{uniform: {spacing: 50, neighbours: 32}}"),
     ("graph", "{prm: {}}"),
     ("graph", "{layers: [30]}"),
-    ("max_height", "30"),
+    ("limits", "{max_height: 30}"),
+    ("limits", "{wind: 12 m/s, way_home: false}"),
+    ("limits", "{}"),
     ("departure", "2026-05-01T08:00Z"),
     ("departure", "'2026-05-01T08:00:00.5-03:30'"),
     ("export", "{plan: False}"),
-    ("keep_out", "[]"),
+    ("limits", "{keep_out: []}"),
 ]  # fmt: skip
 
 
@@ -162,10 +176,10 @@ def test_aliases_repeat_a_value() -> None:
         ("via.7", (26, 3)),
         ("terrain.dem.1", (10, 16)),
         ("terrain.mesh", (10, 3)),
-        ("keep_out.1.polygon", (42, 7)),
-        ("keep_out.1.polygon.east_north.2.1", (42, 42)),
-        ("keep_out.0.polygon.1.0", (37, 30)),
-        ("keep_out.0.ceiling.deeper.still", (39, 14)),
+        ("limits.keep_out.1.polygon", (42, 9)),
+        ("limits.keep_out.1.polygon.east_north.2.1", (42, 44)),
+        ("limits.keep_out.0.polygon.1.0", (37, 32)),
+        ("limits.keep_out.0.ceiling.deeper.still", (39, 16)),
         ("nothing.like.that", (1, 1)),
         ("", (1, 1)),
     ],
@@ -176,8 +190,8 @@ def test_places(field: str, place: tuple[int, int]) -> None:
 
 def test_a_problem_and_a_path_of_a_document() -> None:
     document = parse_mission(FULL, Path("folder/m.yaml"))
-    problem = document.problem("keep_out.1.polygon", "crosses itself")
-    assert problem == Problem("crosses itself", "keep_out.1.polygon", Path("folder/m.yaml"), 42, 7)
+    problem = document.problem("limits.keep_out.1.polygon", "crosses itself")
+    assert problem == Problem("crosses itself", "limits.keep_out.1.polygon", Path("folder/m.yaml"), 42, 9)
     assert document.beside("a.tif") == Path("folder/a.tif")
     assert document.beside("/data/a.tif") == Path("/data/a.tif")
 

@@ -36,8 +36,11 @@ def test_every_field_stands_in_the_reference() -> None:
     assert "| `clearance` | length [m], above 0 and at most 300000 | `30 m` |" in reference
     assert "| `from` | angle [deg], between 0 and 360 | required |" in reference
     assert "## start, goal, via[], fence.return_point, rally[]" in reference
-    assert "## keep_out[].circle, keep_in[].circle" in reference
+    assert "## limits.keep_out[].circle, limits.keep_in[].circle" in reference
     assert "| `fence` | `true`, `false` | `false` | whether the autopilot's own fence holds it too" in reference
+    assert "| `battery` | share, between 0 and 0.9 |  | share of the whole capacity that must be left" in reference
+    assert "| `order` | `given`, `free` | `given` | in which order `via` is passed" in reference
+    assert "- share: %" in reference
     assert "- speed: m/s, km/h, kt, mph, ft/s, ft/min" in reference
 
 
@@ -51,17 +54,22 @@ def test_the_json_schema_allows_units_and_short_forms() -> None:
     schema = json_schema()
     json.dumps(schema, allow_nan=False)
     kinds = schema["$defs"]
-    number, text, _ = kinds["VehicleModel"]["properties"]["airspeed"]["anyOf"]
+    free, number, text, _ = kinds["VehicleModel"]["properties"]["airspeed"]["anyOf"]
+    assert free == {"const": "free"}
     assert number == {"type": "number", "minimum": 0.1, "maximum": 150}
     assert re.search(text["pattern"], "20 kt")
     assert not re.search(text["pattern"], "20 m")
-    assert kinds["CostModel"]["anyOf"][0]["enum"] == ["distance", "angle", "hybrid", "time"]
+    assert kinds["CostModel"]["anyOf"][0]["enum"] == ["distance", "angle", "hybrid", "time", "energy"]
     assert kinds["PolygonModel"]["anyOf"][0]["type"] == "array"
     assert kinds["TerrainModel"]["properties"]["dem"]["anyOf"][0]["type"] == "string"
     assert kinds["WindModel"]["oneOf"][0] == {"required": ["calm"]}
     assert kinds["AreaModel"]["oneOf"] == [{"required": ["polygon"]}, {"required": ["circle"]}]
     assert kinds["AreaModel"]["properties"]["fence"]["default"] is False
     assert "from" in kinds["ConstantWindModel"]["required"]
+    share, percent, _ = kinds["LimitsModel"]["properties"]["battery"]["anyOf"]
+    assert share == {"type": "number", "minimum": 0, "maximum": 0.9}
+    assert re.search(percent["pattern"], "30 %")
+    assert schema["properties"]["order"]["enum"] == ["given", "free"]
     assert set(schema["properties"]) == set(known_fields(MissionModel))
 
 

@@ -103,7 +103,7 @@ VALUES = st.recursive(
         st.lists(inner, max_size=4).map(lambda items: f"[{', '.join(map(str, items))}]"),
         st.dictionaries(
             st.sampled_from(
-                ["name", "polygon", "latitude", "east", "prm", "uniform", "layers", "surface", "law", "dem"]
+                ["name", "polygon", "keep_out", "wind", "latitude", "east", "prm", "uniform", "layers", "law", "dem"]
             ),
             inner,
             max_size=4,
@@ -120,12 +120,11 @@ VALUES = st.recursive(
             "via",
             "cost",
             "graph",
-            "keep_out",
+            "limits",
             "obstacles",
             "departure",
             "export",
             "clearance",
-            "max_height",
         ]
     ),
     VALUES,
