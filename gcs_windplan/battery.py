@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import BatteryError
 from gcs_windplan.flight import Flight
 from gcs_windplan.request import Request
-from gcs_windplan.vehicle import air_density
+from gcs_windplan.vehicle import (
+    ARDUCOPTER_PACE,
+    PX4_PACE,
+    air_density,
+    as_flown,
+    landing_seconds,
+    takeoff_seconds,
+)
+
+_FASTEST: Final = 1000.0  # [m/s] no limit: the planned ground speeds have the wind in them
+_SLOWEST: Final = 0.01  # [m/s] or [s]
+_LEVEL: Final = 1.0  # [m] a leg shorter than this in plan is a climb or descent on the spot
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +94,7 @@ def allowances_of(request: Request, height: float) -> tuple[Allowance, ...]:
 def battery_use(
     request: Request, flight: Flight, en_route: float | None = None, home_again: float = 0.0
 ) -> BatteryUse | None:
-    """What a flight takes from the battery; None where the airframe is not known.
+    """What a flight takes from the battery as the autopilot flies it; None where the airframe is not known.
 
     `en_route` [J] takes the place of the flight's own energy between first and last waypoint; `home_again` [J] is what
     a return at the end takes.
@@ -87,15 +102,38 @@ def battery_use(
     airframe, totals = request.airframe, flight.totals
     if airframe is None or totals.energy is None or totals.takeoff_energy is None or totals.landing_energy is None:
         return None
-    battery = airframe.battery
-    drawn, left = totals.takeoff_energy, [1 - totals.takeoff_energy / battery.capacity]
-    for leg in flight.legs:
-        drawn += leg.energy or 0.0
-        left.append(1 - drawn / battery.capacity)
-    ends = totals.takeoff_energy + (totals.landing_energy if request.finish == "land" else home_again)
-    total = ends + (totals.energy if en_route is None else max(en_route, totals.energy))
+    battery, longer = airframe.battery, _longer(request, flight)
+    takeoff, landing = totals.takeoff_energy * longer[0], totals.landing_energy * longer[-1]
+    legs = [(leg.energy or 0.0) * share for leg, share in zip(flight.legs, longer[1:-1], strict=True)]
+    drawn = takeoff + np.append(0.0, np.cumsum(legs))
+    left = tuple((1 - drawn / battery.capacity).tolist())
+    ends = takeoff + (landing if request.finish == "land" else home_again)
+    flown = math.fsum(legs)
+    total = ends + (flown if en_route is None else max(en_route * flown / totals.energy, flown))
     height = math.fsum(waypoint.altitude for waypoint in flight.waypoints) / len(flight.waypoints)
-    return BatteryUse(tuple(left), total, battery.usable_energy, allowances_of(request, height))
+    return BatteryUse(left, total, battery.usable_energy, allowances_of(request, height))
+
+
+def _longer(request: Request, flight: Flight) -> FloatArray:
+    """How many times as long take-off, legs and landing (n + 2,) last as the autopilot flies them, at the same power.
+
+    A multicopter slows at corners and gains speed again, and lands slowly; its own law (`vehicle/pace.py`) says how
+    slowly. Never shorter than planned.
+    """
+    longer = np.ones(len(flight.legs) + 2)
+    totals = flight.totals
+    if not request.vehicle.hovers:
+        return longer
+    pace = replace(PX4_PACE if request.vehicle.autopilot == "px4" else ARDUCOPTER_PACE, airspeed=_FASTEST)
+    points = np.array([(waypoint.east, waypoint.north, waypoint.altitude) for waypoint in flight.waypoints])
+    told = np.array([leg.ground_speed if leg.distance >= _LEVEL else pace.speed for leg in flight.legs])
+    seconds = as_flown(points, np.maximum(told, _SLOWEST), pace=pace).seconds
+    planned = np.array([leg.seconds for leg in flight.legs])
+    longer[1:-1] = seconds / np.maximum(planned, _SLOWEST)
+    first, last = flight.waypoints[0].above_ground, flight.waypoints[-1].above_ground
+    longer[0] = takeoff_seconds(first, pace, request.vehicle.climb) / max(totals.takeoff_seconds, _SLOWEST)
+    longer[-1] = landing_seconds(last, pace, request.vehicle.descent) / max(totals.landing_seconds, _SLOWEST)
+    return np.maximum(longer, 1.0)
 
 
 def refuse_overdrawn(use: BatteryUse | None) -> None:

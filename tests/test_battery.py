@@ -9,9 +9,11 @@ import pytest
 from typer.testing import CliRunner
 
 import gcs_windplan as gw
+from gcs_windplan.assessment import assess_plan
 from gcs_windplan.battery import Allowance, BatteryUse, allowances_of, refuse_overdrawn
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import BatteryError
+from gcs_windplan.mission.planned import flown_duration
 from gcs_windplan.request import Limits
 from gcs_windplan.spec.airframe import read_airframe
 from gcs_windplan.wind import Calm
@@ -31,14 +33,33 @@ def smaller(airframe, joules: float):
 
 def test_what_is_left_falls_from_waypoint_to_waypoint(airframe):
     plan = gw.plan_route(request(wind=Calm(), airframe=airframe))
-    totals, use = plan.totals, plan.battery
-    assert use.total == pytest.approx(totals.energy + totals.takeoff_energy + totals.landing_energy)
-    assert use.left[0] == pytest.approx(1 - totals.takeoff_energy / airframe.battery.capacity)
-    assert use.left[-1] == pytest.approx(1 - (totals.takeoff_energy + totals.energy) / airframe.battery.capacity)
+    use = plan.battery
+    takeoff, en_route, landing = as_flown(plan)
+    assert use.total == pytest.approx(takeoff + en_route + landing)
+    assert use.left[0] == pytest.approx(1 - takeoff / airframe.battery.capacity)
+    assert use.left[-1] == pytest.approx(1 - (takeoff + en_route) / airframe.battery.capacity)
     assert list(use.left) == sorted(use.left, reverse=True)
     assert use.missing == 0
     returning = gw.plan_route(request(wind=Calm(), airframe=airframe, finish="hold"))
-    assert returning.battery.total == pytest.approx(use.total - totals.landing_energy)
+    assert returning.battery.total == pytest.approx(use.total - landing)
+
+
+@pytest.mark.parametrize("name", ["shear", "rounds", "front"])
+def test_the_review_of_the_mission_that_is_written_finds_the_same(gallery, name):
+    """Two ways to the battery's end: the plan's legs made longer, and the mission's items flown sample by sample."""
+    plan = gw.plan_route(gw.read_mission(gallery / f"{name}.yaml"))
+    review = assess_plan(plan)
+    end = plan.totals.takeoff_energy + plan.totals.landing_energy + plan.totals.energy
+    assert review.sums.energy > 1.01 * end
+    assert plan.battery.left[-1] == pytest.approx(review.stops[-1].left, abs=0.012)
+
+
+def as_flown(plan) -> tuple[float, float, float]:
+    """Take-off, one leg and landing [J], each as much longer than planned as the mission takes."""
+    totals, flown = plan.totals, flown_duration(plan)
+    takeoff = totals.takeoff_energy * flown.takeoff / totals.takeoff_seconds
+    landing = totals.landing_energy * flown.ending / totals.landing_seconds
+    return takeoff, totals.energy * flown.en_route / totals.seconds, landing
 
 
 def test_a_mission_that_breaks_the_reserve_is_refused_and_says_by_how_much(airframe):
@@ -115,8 +136,10 @@ def test_a_plan_keeps_the_limits_of_its_battery(airframe):
 def test_over_an_ensemble_the_member_at_the_quantile_counts(airframe):
     plan = gw.plan_route(replace(divided(0.5), airframe=airframe))
     robust = plan.request.airframe.battery
-    ends = plan.totals.takeoff_energy + plan.totals.landing_energy
-    assert plan.battery.total == pytest.approx(ends + max(plan.spread.energy_at(0.5), plan.totals.energy))
+    takeoff, en_route, landing = as_flown(plan)
+    longer = en_route / plan.totals.energy
+    most = max(plan.spread.energy_at(0.5), plan.totals.energy)
+    assert plan.battery.total == pytest.approx(takeoff + landing + most * longer, rel=5e-3)  # here of several legs
     assert plan.battery.allowed == pytest.approx(robust.capacity * 0.8 * 0.8)
 
 

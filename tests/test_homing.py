@@ -71,8 +71,9 @@ def test_the_point_of_no_return_by_hand(airframe):
     asked = request(wind=Everywhere(5.0), airframe=airframe)
     plan = gw.plan_routes(asked, [asked.cost])[0]
     power = plan.totals.energy / plan.totals.seconds  # level at one airspeed: the same out and back
-    out, back = power / 15.0, power / 5.0  # [J/m]
-    fixed = plan.totals.takeoff_energy + landing(airframe, 40.0)
+    drawn = (1 - np.array(plan.battery.left)) * airframe.battery.capacity
+    out, back = (drawn[-1] - drawn[0]) / 1800.0, power / 5.0  # [J/m]: the way out as flown, with its start and stop
+    fixed = drawn[0] + landing(airframe, 40.0)
     allowed = fixed + 1000.0 * (out + back)
     tight = with_battery(replace(asked, limits=Limits(way_home=False)), allowed)
     found = gw.plan_route(tight).ways_home.no_return
@@ -105,9 +106,9 @@ def test_a_mission_that_returns_at_the_end_counts_the_return(airframe):
     asked = request(wind=Everywhere(5.0), airframe=airframe, finish="return")
     plan = gw.plan_routes(asked, [asked.cost])[0]
     totals = plan.totals
-    assert plan.battery.total == pytest.approx(
-        totals.takeoff_energy + totals.energy + plan.ways_home.energies[-1], rel=1e-9
-    )
+    drawn = (1 - plan.battery.left[-1]) * airframe.battery.capacity
+    assert drawn > totals.takeoff_energy + totals.energy
+    assert plan.battery.total == pytest.approx(drawn + plan.ways_home.energies[-1], rel=1e-9)
     assert plan.ways_home.energies[-1] > 2 * totals.energy  # 5 against 15 m/s over ground
     with pytest.raises(BatteryError, match="breaks the reserve by"):
         gw.plan_route(with_battery(asked, totals.takeoff_energy + totals.energy * 1.5))
