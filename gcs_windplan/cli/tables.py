@@ -120,7 +120,7 @@ def _energy(plan: Plan) -> list[str]:
         line += f" (in the members: median {median}, 10 - 90 % {low} - {high} Wh)"
     over = f", {watt_hours(use.missing)} Wh into the reserve" if use.missing else ", the reserve stays"
     return [
-        f"{line}; {watt_hours(use.total)} Wh with take-off{' and landing' * (plan.request.finish == 'land')}, of"
+        f"{line}; {watt_hours(use.total)} Wh as flown, with take-off{_last(plan)}, of"
         f" {watt_hours(use.usable)} usable Wh{over} ({airframe.name})"
     ]
 
@@ -139,6 +139,11 @@ def _strongest(plan: Plan) -> list[str]:
     ]
     kept = f"; {met.keeping(limits)} of {members} keep the limits" if members > 1 else ""
     return [f"strongest{where}: {', '.join(told)}{kept}"]
+
+
+def _last(plan: Plan) -> str:
+    """What comes after the route and counts."""
+    return {"land": " and landing", "return": " and return", "hold": ""}[plan.request.finish]
 
 
 def _way_home(plan: Plan) -> list[str]:
@@ -174,7 +179,7 @@ def _ends(plan: Plan) -> str:
     if plan.request.finish == "land":
         return f"{takeoff} and landing {clock(plan.totals.landing_seconds)} more"
     if plan.request.finish == "return":
-        return f"{takeoff} more; the return to launch is not counted"
+        return f"{takeoff} and the return to launch more"
     return f"{takeoff} more"
 
 

@@ -28,7 +28,7 @@ def format_summary(plan: Plan) -> str:
         "vehicle": asdict(request.vehicle),
         "wind": request.wind.name,
         "terrain": {"name": request.terrain.name, "vertical_datum": request.terrain.vertical_datum},
-        "limits": {"clearance": request.clearance, "max_height": request.max_height},
+        "limits": {"clearance": request.clearance, "max_height": request.max_height, **asdict(request.limits)},
         "finish": request.finish,
         "totals": asdict(plan.totals),
         "ensemble": _ensemble(plan),
