@@ -14,13 +14,13 @@ from gcs_windplan.flight import clock
 if TYPE_CHECKING:
     from gcs_windplan.planner import Plan
 
-_WIDTH = 120  # where the output is no terminal
+_WIDTH, _WIDE = 100, 120  # where the output is no terminal
 
 
-def make_console() -> Console:
-    """The terminal, or 120 columns where there is none."""
+def make_console(width: int = _WIDTH) -> Console:
+    """The terminal, or so many columns where there is none."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
+    return console if console.is_terminal else Console(highlight=False, width=width)
 
 
 def print_legs(plan: Plan) -> None:
@@ -35,7 +35,7 @@ def print_legs(plan: Plan) -> None:
             f"{leg.climb:+.0f}", f"{target.altitude:.1f}", f"{leg.ground_speed:.1f}", f"{leg.wind_along:+.1f}",
             f"{leg.wind_across:+.1f}", clock(leg.seconds), f"{leg.clearance:.0f}-{leg.height:.0f}", *rest,
         )  # fmt: skip
-    console = make_console()
+    console = make_console(_WIDE)
     console.print(table)
     for line in summary_lines(plan):
         console.print(line, soft_wrap=True, markup=False)
@@ -203,7 +203,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
             f"{totals.length / 1000:.2f}", f"{len(plan.waypoints)}", f"{totals.climb:.0f}",
             f"{totals.clearance:.0f}-{totals.height:.0f}", f"{effort.expanded}", f"{effort.search_seconds:.3f}",
         )  # fmt: skip
-    console = make_console()
+    console = make_console(_WIDE)
     console.print(table)
     for line in _gain(plans) if powered else []:
         console.print(line, soft_wrap=True)
