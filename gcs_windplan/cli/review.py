@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal
@@ -91,7 +92,8 @@ def review(
     with answering("review", as_json):
         wanted = _exports(also)
         assessments = _judge([mission] if other is None else [mission, other], by, options)
-        written = _write(assessments, output, wanted)
+        read = [file for file in (mission, other, by, vehicle) if file is not None]
+        written = _write(assessments, output, wanted, read)
     code = 1 if any(assessment.findings for assessment in assessments) else 0
     if as_json:
         from gcs_windplan.formats.verdict import format_verdict
@@ -123,8 +125,10 @@ def _exports(also: str | None) -> tuple[str, ...]:
     return wanted
 
 
-def _write(assessments: Sequence[Assessment], output: Path | None, wanted: Sequence[str]) -> list[Path]:
-    """Write the page and what is wanted beside it, all or nothing."""
+def _write(
+    assessments: Sequence[Assessment], output: Path | None, wanted: Sequence[str], read: Sequence[Path]
+) -> list[Path]:
+    """Write the page and what is wanted beside it, all or nothing, and never over what was read."""
     from gcs_windplan.cli.plan import write
     from gcs_windplan.errors import InputError, Problem
     from gcs_windplan.review.page import render_page
@@ -132,6 +136,8 @@ def _write(assessments: Sequence[Assessment], output: Path | None, wanted: Seque
     page = output if output is not None else _default(assessments)
     if page.is_dir():
         page = page / "review.html"
+    if page.suffix.lower() not in (".html", ".htm"):
+        raise InputError(Problem(f"{page.name} is no name of a page: give one that ends in .html", "--output"))
     files: dict[str, str | bytes] = {page.name: render_page(assessments)}
     for number, assessment in enumerate(assessments, start=1):
         stem = page.stem if len(assessments) == 1 else f"{page.stem}-{number}"
@@ -140,6 +146,9 @@ def _write(assessments: Sequence[Assessment], output: Path | None, wanted: Seque
         from gcs_windplan.review import draw_assessment_map
 
         files[f"{page.stem}.map.png"] = draw_assessment_map(assessments)
+    over = next((file for file in read if (page.parent / file.name).resolve() == file.resolve()), None)
+    if over is not None and over.name in files:
+        raise InputError(Problem("is what was read, and would be written over: choose another -o", file=over))
     try:
         page.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -164,7 +173,7 @@ def _beside(assessment: Assessment, stem: str, wanted: Sequence[str]) -> dict[st
 
 def _default(assessments: Sequence[Assessment]) -> Path:
     """Where the page goes if nobody says."""
-    name = "_and_".join(dict.fromkeys(one.name.strip().lower().replace(" ", "_") for one in assessments))
+    name = "_and_".join(dict.fromkeys(re.sub(r"[^\w.-]+", "_", one.name.strip().lower()) for one in assessments))
     return Path("out") / name / "review.html"
 
 

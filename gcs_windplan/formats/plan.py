@@ -32,6 +32,7 @@ from gcs_windplan.mission import (
     Home,
     Mission,
     MissionItem,
+    command_name,
     is_global,
     plain_frame,
     takes_place,
@@ -193,7 +194,10 @@ def _expanded(node: Node, repairs: Repairs) -> Iterator[Node]:
 def _item(node: Node, repairs: Repairs) -> MissionItem:
     command, frame = node.at("command").whole(), node.at("frame").whole()
     p1, p2, p3, p4, *place = _seven_numbers(node, repairs)
-    if any(map(math.isnan, place)) and takes_place(command) and is_global(frame):
+    unknown = list(map(math.isnan, place))
+    if any(unknown) and takes_place(command) and is_global(frame):
+        if unknown[0] != unknown[1] or (unknown[2] and not unknown[0]):
+            node.refuse(f"{command_name(command)} has null for a part of its place: give all of it, or none for 'here'")
         repairs.add(f"{node.path}.params: null in the place was read as 0")
     latitude, longitude, altitude = (0.0 if math.isnan(number) else number for number in place)
     proceed = _flag(node.at("autoContinue"), repairs)

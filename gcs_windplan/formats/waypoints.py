@@ -21,7 +21,17 @@ from gcs_windplan.errors import FormatError, InputError, Problem
 from gcs_windplan.formats.digits import degrees_text, metres_text, number_text
 from gcs_windplan.formats.reading import ReadMission, Repairs, home_or_none, read_text, without_mark
 from gcs_windplan.formats.writing import write_atomically
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, command_name, plain_frame
+from gcs_windplan.mission import (
+    Command,
+    Frame,
+    Home,
+    Mission,
+    MissionItem,
+    command_name,
+    is_global,
+    plain_frame,
+    takes_place,
+)
 
 _PARAMS = ("p1", "p2", "p3", "p4")
 _PLACE = ("latitude", "longitude", "altitude")
@@ -112,7 +122,7 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     _note_numbering(rows, repairs)
     home, items = _split_home(rows, version, repairs)
     shift = 1 if version == 120 else 0
-    mission = Mission(tuple(_shifted(row.item(), shift) for row in items), home)
+    mission = Mission(tuple(_shifted(row.item(repairs), shift) for row in items), home)
     return ReadMission(mission, repairs.sentences())
 
 
@@ -179,9 +189,6 @@ class _Row:
             raise FormatError(Problem(message, file=self.file, line=self.line))
         if whole and not text.isdecimal():
             repairs.add(f"{name} {text!r} read as {number:g}", self.line)
-        if name in _PLACE and math.isnan(number):
-            repairs.add(f"{name} 'nan' read as 0", self.line)
-            return 0.0
         return number
 
     def _from_100(self, repairs: Repairs) -> _Row:
@@ -195,11 +202,28 @@ class _Row:
         repairs.add("row of version 100 put into the order of 110", self.line)
         return _Row(self.line, self.file, {**self.values, "command": float(command)})
 
-    def item(self) -> MissionItem:
+    def place(self, command: int, repairs: Repairs) -> tuple[float, float, float]:
+        """Latitude, longitude and altitude; NaN for latitude and longitude means "here", as 0 does.
+
+        Half a place, or a place without an altitude, is refused: 0 would be somewhere else.
+        """
+        numbers = [self.values[name] for name in _PLACE]
+        unknown = [math.isnan(number) for number in numbers]
+        if takes_place(command) and is_global(int(self.values["frame"])) and (unknown[0] != unknown[1] or unknown[2]):
+            name = _PLACE[unknown.index(True)]
+            message = f"{name} is 'nan', and {command_name(command)} needs one: write the number"
+            raise FormatError(Problem(message, file=self.file, line=self.line))
+        if any(unknown):
+            names = [name for name, gone in zip(_PLACE, unknown, strict=True) if gone]
+            repairs.add(f"{' and '.join(names)} 'nan' read as 0", self.line)
+        latitude, longitude, altitude = (0.0 if gone else number for number, gone in zip(numbers, unknown, strict=True))
+        return latitude, longitude, altitude
+
+    def item(self, repairs: Repairs) -> MissionItem:
         value = self.values
         frame, command = int(value["frame"]), int(value["command"])
         p1, p2, p3, p4 = (value[name] for name in _PARAMS)
-        latitude, longitude, altitude = (value[name] for name in _PLACE)
+        latitude, longitude, altitude = self.place(command, repairs)
         proceed = bool(value["autocontinue"])
         try:
             return MissionItem(frame, command, (p1, p2, p3, p4), latitude, longitude, altitude, proceed)
@@ -213,7 +237,7 @@ class _Row:
             repairs.add(f"row 0 is home in this format; its {command_name(command)} is not flown", self.line)
         if plain_frame(frame) != Frame.GLOBAL:
             repairs.add(f"home's altitude read as above sea level, though its frame is {frame}", self.line)
-        latitude, longitude, altitude = (self.values[name] for name in _PLACE)
+        latitude, longitude, altitude = self.place(Command.NAV_WAYPOINT, repairs)
         try:
             return home_or_none(latitude, longitude, altitude, repairs)
         except InputError as error:

@@ -225,6 +225,16 @@ def test_a_mission_with_a_far_waypoint_says_which(tmp_path: Path):
     assert done.exception is None or "item" in str(done.exception)
 
 
+@pytest.mark.parametrize("output", ["drawn.plan", "page.kml", "notes.txt"])
+def test_nothing_that_was_read_is_written_over(drawn: Path, tmp_path: Path, output: str):
+    """Two missions stand side by side on the command line: a name too many must not cost one of them."""
+    before = drawn.read_bytes()
+    found = review(drawn, "--terrain", "flat:500", "-o", tmp_path / output, "--also", "kml")
+    assert isinstance(found.exception, InputError)
+    assert "give one that ends in .html" in str(found.exception)
+    assert drawn.read_bytes() == before
+
+
 def test_the_word_of_a_page_that_is_a_folder(drawn: Path, tmp_path: Path):
     (tmp_path / "pages").mkdir()
     done = review(drawn, "--terrain", "flat:500", "-o", tmp_path / "pages")

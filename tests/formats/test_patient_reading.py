@@ -55,7 +55,7 @@ def test_a_clean_sheet_needs_no_repair() -> None:
         (CLEAN.replace("\t3\t16", "\t3.0\t16"), "line 3: frame '3.0' read as 3"),
         (CLEAN.replace("\n1\t0", "\n7\t0"), "line 3: numbered out of order; the order in the file counts"),
         (CLEAN.replace("\n1\t0", "\n1\t2"), "line 3: current 2 would mean 'fly there now'; ignored"),
-        (CLEAN.replace("40.5", "nan"), "line 3: altitude 'nan' read as 0"),
+        (CLEAN.replace("46.82\t9.85", "nan\tnan"), "line 3: latitude and longitude 'nan' read as 0"),
     ],
 )
 def test_repairs_change_nothing_and_are_said(text: str, repair: str) -> None:
@@ -137,6 +137,8 @@ def test_version_100_is_read_as_mavwp_reads_it(mavwp_load: Any, tmp_path: Path) 
         (CLEAN.replace("40.5", "4_0"), "sheet.txt:3: field 11 (altitude) is '4_0', not a number"),
         (CLEAN.replace("40.5", "inf"), "sheet.txt:3: field 11 (altitude) is 'inf', not a number"),
         (CLEAN.replace("\t3\t16", "\t3.5\t16"), "sheet.txt:3: field 3 (frame) is '3.5', not a whole number"),
+        (CLEAN.replace("40.5", "nan"), "sheet.txt:3: altitude is 'nan', and NAV_WAYPOINT needs one: write the number"),
+        (CLEAN.replace("46.82", "nan"), "sheet.txt:3: latitude is 'nan', and NAV_WAYPOINT needs one: write the number"),
         (CLEAN.replace("\t3\t16", "\tnan\t16"), "sheet.txt:3: field 3 (frame) is 'nan', not a whole number"),
         (CLEAN.replace("\t3\t16", "\t3\t-16"), "sheet.txt:3: command -16 is not between 0 and 65535"),
         (CLEAN.replace("46.82", "146.82"), "sheet.txt:3: latitude 146.82 is not between -90 and 90"),
