@@ -28,6 +28,7 @@ from gcs_windplan.windlimits import limited
 #: [s] what a multicopter loses at a slight corner: over rough ground ArduCopter was quickest, by its own law, when
 #: waypoints that gain less were left out (0.5 and 1 s were alike, 0 and 2 s half a percent and more slower).
 _CORNER: Final = 0.7
+_HAIR: Final = 1.0  # [m] legs so short are none: half of ArduCopter's default waypoint radius
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,6 +139,7 @@ def find_route(
         if not np.isfinite(times[-1]):
             _refuse(ready, found.points, begin)
         found.arrival = float(times[-1])
+    found.points = _without_hairs(found.points, ready.rules)
     found.airspeeds = _airspeeds(ready, choice, found.points, begin, worth)
     return found
 
@@ -162,6 +164,25 @@ def cost_between(
 
 def unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
     """The graph's path as it is: a shaping that shapes nothing."""
+    return points
+
+
+def _without_hairs(points: FloatArray, rules: Clearance) -> FloatArray:
+    """The polyline (n, 3) without one end of each leg shorter than a metre, where the legs that are left stay clear.
+
+    Shaping leaves such legs at vias that stand just at the clearance. A via is passed at less than a metre then, which
+    is half of an autopilot's acceptance radius.
+    """
+    i = 1
+    while i < len(points) - 2:
+        if np.linalg.norm(points[i + 1] - points[i]) < _HAIR:
+            for gone in (i, i + 1):
+                left = np.delete(points, gone, axis=0)
+                around = slice(gone - 1, gone), slice(gone, gone + 1)
+                if not rules.breaches(left[around[0]], left[around[1]])[0]:
+                    points = left
+                    break
+        i += 1
     return points
 
 

@@ -12,7 +12,13 @@ from gcs_windplan.budget import quickest_within
 from gcs_windplan.cost import CostChoice
 from gcs_windplan.errors import BatteryError, MissionFileError, RequestError
 from gcs_windplan.mission import Command
+from gcs_windplan.routing import _without_hairs
+from gcs_windplan.spec.airframe import read_airframe
+from gcs_windplan.vehicle import air_density
+from gcs_windplan.vehicle.power_grid import airspeed_choices
+from gcs_windplan.veil import Clearance
 from tests.test_homing import with_battery
+from tests.worlds import rough_dem
 
 
 @pytest.fixture(scope="module")
@@ -100,3 +106,23 @@ def test_energy_without_an_airframe_is_told(gallery):
     shear = gw.read_mission(gallery / "shear.yaml")
     with pytest.raises(RequestError, match="the paper's speed model has no airspeed"):
         gw.plan_route(replace(shear, vehicle=replace(shear.vehicle, speed_model="paper")))
+
+
+def test_a_wing_keeps_away_from_its_stall(gallery):
+    """In a tail wind the airspeed of least power lies below 1.2 times the stall of the Aerosonde."""
+    airframe = read_airframe(gallery / "vehicles" / "fixed_wing.yaml")
+    stall = airframe.power.airspeeds(float(air_density(1000.0)))[0]
+    assert stall == pytest.approx(15.7 * (1.225 / float(air_density(1000.0))) ** 0.5)
+    choices = airspeed_choices(airframe, 1000.0)
+    assert choices[0] == pytest.approx(1.2 * stall)
+    assert choices[-1] == airframe.maximum_airspeed
+
+
+def test_a_leg_of_a_hair_is_joined_where_what_is_left_stays_clear():
+    rules = Clearance(rough_dem(1, relief=0.0), 20.0)
+    line = np.array([[0.0, 0, 30], [100, 0, 30], [100, 0.1, 30], [200, 0, 30]])
+    assert len(_without_hairs(line, rules)) == 3
+    low = np.array([[0.0, 0, 30], [100, 0, 20], [100, 0.1, 20], [200, 0, 30], [300, 0, 30]])
+    assert _without_hairs(low, rules).tolist() == np.delete(low, 1, axis=0).tolist()
+    ends = np.array([[0.0, 0, 30], [0, 0.1, 30], [200, 0, 30]])
+    assert (_without_hairs(ends, rules) == ends).all()  # take-off and landing stay where they are

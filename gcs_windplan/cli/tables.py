@@ -151,9 +151,9 @@ def _way_home(plan: Plan) -> list[str]:
     ways = plan.ways_home
     if ways is None:
         return []
-    most = f"home takes at most {watt_hours(max(ways.energies))} Wh"
+    most = f"the thriftiest way home takes at most {watt_hours(max(ways.energies))} Wh"
     if plan.request.rally:
-        most += f", a rally point at most {watt_hours(max(ways.diversions))} Wh"
+        most += f", to a rally point at most {watt_hours(max(ways.diversions))} Wh"
     if ways.no_return is None:
         return [f"{most}; it is in reach with the reserve from every waypoint"]
     point = ways.no_return

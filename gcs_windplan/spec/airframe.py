@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 
-from gcs_windplan.errors import MissionFileError, Problem
+from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.spec.marks import MarkedError, Marks, Values
 from gcs_windplan.spec.parsing import _compose, _order, _schema_problems, _yaml_problems
 from gcs_windplan.spec.section import Fields, Finding, Section
@@ -228,7 +228,17 @@ def parse_airframe(text: str, file: Path) -> Airframe:
         problems += [found for found in _schema_problems(error, marks, file) if found.field not in broken]
     if problems:
         raise MissionFileError(sorted(dict.fromkeys(problems), key=_order))
-    return _airframe(model)
+    try:
+        return _airframe(model)
+    except InputError as error:  # numbers that are right one by one
+        raise MissionFileError([_placed(problem, marks, file) for problem in error.problems]) from None
+
+
+def _placed(problem: Problem, marks: Marks, file: Path) -> Problem:
+    """A problem of an airframe at its field's place in the file."""
+    path = tuple((problem.field or "").split("."))
+    line, column = marks.place(path)
+    return replace(problem, file=file, line=line, column=column)
 
 
 def _marks(text: str, file: Path) -> Marks:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from gcs_windplan.errors import InputError, Problem
+from gcs_windplan.vehicle.air import SEA_LEVEL_DENSITY
 from gcs_windplan.vehicle.power import PowerModel
 from gcs_windplan.vehicle.vehicle import Vehicle
 
@@ -61,5 +64,11 @@ class Airframe:
         if self.maximum_airspeed < self.vehicle.airspeed:
             text = f"{self.maximum_airspeed:g} m/s is less than the cruise at {self.vehicle.airspeed:g} m/s"
             raise InputError(Problem(text, "maximum_airspeed"))
+        rates = np.array([-self.vehicle.descent, 0.0, self.vehicle.climb])
+        with np.errstate(all="ignore"):
+            drawn = self.power.watts(self.vehicle.airspeed, rates, SEA_LEVEL_DENSITY)
+        if not (np.isfinite(drawn).all() and drawn[1] > 0):
+            text = f"at the cruise it comes to {float(drawn[1]):g} W, climbing to {float(drawn[2]):g} W: check its numbers"
+            raise InputError(Problem(text, "power"))
         if not (math.isfinite(self.acceleration) and self.acceleration > 0):
             raise InputError(Problem(f"must be above 0 m/s², not {self.acceleration}", "acceleration"))

@@ -17,6 +17,7 @@ from gcs_windplan.vehicle.vehicle import Vehicle
 _SPEEDS: Final = 129  # from 0 to the fastest
 _RATES: Final = 32  # from level flight to the larger one of climb and descent
 _HEIGHTS: Final = 5
+_MARGIN: Final = 1.2  # times the slowest airspeed that there is power for
 _CHOICES: Final = 9  # airspeeds that an edge or leg may choose from: between them it loses some thousandths at most
 
 
@@ -50,9 +51,12 @@ def tabulate(
 def airspeed_choices(airframe: Airframe, height: float) -> FloatArray:
     """The airspeeds (9,) [m/s] worth flying at a height [m]: from that of least power to the airframe's largest.
 
-    Slower than at least power no flight takes less energy, in whatever wind, and none is quicker.
+    Slower than at least power no flight takes less energy, in whatever wind, and none is quicker. A wing keeps 1.2 times
+    its stall's airspeed (the usual V2 of CS-23; no gust pushes it below at once).
     """
-    slowest = least_power_airspeed(airframe.power, airframe.maximum_airspeed, float(air_density(height)))
+    density = float(air_density(height))
+    lowest, _ = airframe.power.airspeeds(density)
+    slowest = max(least_power_airspeed(airframe.power, airframe.maximum_airspeed, density), _MARGIN * lowest)
     return np.linspace(min(slowest, airframe.vehicle.airspeed), airframe.maximum_airspeed, _CHOICES)
 
 

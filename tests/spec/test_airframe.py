@@ -237,3 +237,12 @@ def test_whatever_stands_in_a_field_is_an_airframe_or_has_a_place(field: str, va
         return
     assert all(problem.file == FILE and problem.line and problem.column for problem in error.problems)
     assert "does not fit here" not in str(error)
+
+
+def test_a_power_that_no_battery_gives_has_its_place(tmp_path: Path) -> None:
+    """Numbers that are right one by one, and together come to nothing that flies."""
+    file = tmp_path / "absurd.yaml"
+    text = "name: absurd\nmass: 10 kg\nbattery: {capacity: 700 Wh}\nairspeed: 12 m/s\nmaximum_airspeed: 18 m/s\n"
+    file.write_text(f"{text}power: {{model: multirotor, k1: 2, k2: 1e-300, c2: 0, c4: 0.14}}\n")
+    with pytest.raises(MissionFileError, match=r"absurd\.yaml:6:\d+: power: at the cruise it comes to inf W"):
+        read_airframe(file)
