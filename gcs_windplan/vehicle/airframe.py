@@ -68,7 +68,8 @@ class Airframe:
         with np.errstate(all="ignore"):
             drawn = self.power.watts(self.vehicle.airspeed, rates, SEA_LEVEL_DENSITY)
         if not (np.isfinite(drawn).all() and drawn[1] > 0):
-            text = f"at the cruise it comes to {float(drawn[1]):g} W, climbing to {float(drawn[2]):g} W: check its numbers"
+            level, climbing = float(drawn[1]), float(drawn[2])
+            text = f"at the cruise it comes to {level:g} W, climbing to {climbing:g} W: check its numbers"
             raise InputError(Problem(text, "power"))
         if not (math.isfinite(self.acceleration) and self.acceleration > 0):
             raise InputError(Problem(f"must be above 0 m/s², not {self.acceleration}", "acceleration"))

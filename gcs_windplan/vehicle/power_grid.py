@@ -51,8 +51,8 @@ def tabulate(
 def airspeed_choices(airframe: Airframe, height: float) -> FloatArray:
     """The airspeeds (9,) [m/s] worth flying at a height [m]: from that of least power to the airframe's largest.
 
-    Slower than at least power no flight takes less energy, in whatever wind, and none is quicker. A wing keeps 1.2 times
-    its stall's airspeed (the usual V2 of CS-23; no gust pushes it below at once).
+    Slower than at least power no flight takes less energy, in whatever wind, and none is quicker. A wing keeps 1.2
+    times its stall's airspeed (as V2 does in CS-23).
     """
     density = float(air_density(height))
     lowest, _ = airframe.power.airspeeds(density)
