@@ -2,14 +2,17 @@
 
 Coordinates are WGS 84 longitude, latitude and height. RFC 7946 wants heights above the ellipsoid; these are above mean
 sea level, as terrain and autopilots have them, and each feature with one says so in `vertical_datum`.
+
+What lies across the antimeridian is cut there (section 3.1.9), and what leads over a pole there.
 """
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
@@ -17,6 +20,9 @@ if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment, Finding, JudgedLeg, Outline, Stop
 
 _DIGITS, _CENTIMETRES = 7, 2
+_OVER_POLE: Final = 179.9  # [deg] of longitude between two neighbours: their straight line leads over the pole
+
+_Place: TypeAlias = "tuple[float, float, float]"  # longitude and latitude [deg], height [m]
 
 
 def format_geojson(assessment: Assessment) -> str:
@@ -37,6 +43,14 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def on_earth(longitude: float, latitude: float) -> tuple[float, float]:
+    """The same longitude and latitude [deg] within 180 and 90 degrees, for one that went round or over a pole."""
+    latitude = (latitude + 180) % 360 - 180 if abs(latitude) > 90 else latitude
+    if abs(latitude) > 90:
+        longitude, latitude = longitude + 180, math.copysign(180, latitude) - latitude
+    return (longitude + 180) % 360 - 180 if abs(longitude) > 180 else longitude, latitude
+
+
 def _leg(leg: JudgedLeg, assessment: Assessment) -> dict[str, Any]:
     """A leg as flown, a curve with its samples."""
     profile = assessment.profile
@@ -44,19 +58,60 @@ def _leg(leg: JudgedLeg, assessment: Assessment) -> dict[str, Any]:
     start, end = assessment.stops[leg.number - 1], assessment.stops[leg.number]
     low, high = start.distance - 1e-6, end.distance + 1e-6
     inside = inside[(profile.distance[inside] >= low) & (profile.distance[inside] <= high)]
-    line = [_place(start.longitude_deg, start.latitude_deg, start.altitude)]
-    for i in inside:
-        place = _place(float(profile.longitude_deg[i]), float(profile.latitude_deg[i]), float(profile.altitude[i]))
-        if place != line[-1] and i not in (inside[0], inside[-1]):
-            line.append(place)
-    line.append(_place(end.longitude_deg, end.latitude_deg, end.altitude))
+    samples = zip(profile.longitude_deg[inside], profile.latitude_deg[inside], profile.altitude[inside], strict=True)
+    line = [(start.longitude_deg, start.latitude_deg, start.altitude)]
+    line += [(float(x), float(y), float(z)) for x, y, z in samples][1:-1]
+    line.append((end.longitude_deg, end.latitude_deg, end.altitude))
     figures = {name: plain(value) for name, value in asdict(leg).items()}
-    return _feature("leg", {"type": "LineString", "coordinates": line}, figures, assessment)
+    return _feature("leg", _line(line), figures, assessment)
+
+
+def _line(places: Sequence[_Place]) -> dict[str, Any]:
+    """A line, or several where it crosses the antimeridian or a pole."""
+    parts: list[list[list[float]]] = []
+    for part in _parts(places):
+        written = [_place(*place) for place in part]
+        kept = [place for i, place in enumerate(written) if i in (0, len(written) - 1) or place != written[i - 1]]
+        parts.append(kept)
+    if len(parts) == 1:
+        return {"type": "LineString", "coordinates": parts[0]}
+    return {"type": "MultiLineString", "coordinates": parts}
+
+
+def _parts(places: Sequence[_Place]) -> list[list[_Place]]:
+    """A line's parts on either side of the antimeridian or a pole, each with the places where it was cut."""
+    parts: list[list[_Place]] = [[(*on_earth(*places[0][:2]), places[0][2])]]
+    for place in places[1:]:
+        longitude, latitude = on_earth(*place[:2])
+        before = parts[-1][-1]
+        eastwards = (longitude - before[0] + 180) % 360 - 180
+        if abs(eastwards) > _OVER_POLE:
+            pole = math.copysign(90, before[1] + latitude)
+            near, far = abs(pole - before[1]), abs(pole - latitude)
+            height = _between(before[2], place[2], near / (near + far) if near + far else 0)
+            parts[-1].append((before[0], pole, height))
+            parts.append([(longitude, pole, height), (longitude, latitude, place[2])])
+            continue
+        unwrapped = before[0] + eastwards
+        if abs(unwrapped) <= 180:
+            parts[-1].append((unwrapped, latitude, place[2]))
+            continue
+        side = math.copysign(180, unwrapped)
+        share = (side - before[0]) / eastwards
+        cut = _between(before[1], latitude, share), _between(before[2], place[2], share)
+        if share > 0:
+            parts[-1].append((side, *cut))
+        parts.append([(-side, *cut), (longitude, latitude, place[2])])
+    return [part for part in parts if len(part) > 1] or parts
+
+
+def _between(first: float, second: float, share: float) -> float:
+    return first * (1 - share) + second * share
 
 
 def _stop(stop: Stop, assessment: Assessment) -> dict[str, Any]:
     figures = {name: plain(value) for name, value in asdict(stop).items()}
-    place = _place(stop.longitude_deg, stop.latitude_deg, stop.altitude)
+    place = _place(*on_earth(stop.longitude_deg, stop.latitude_deg), stop.altitude)
     return _feature("stop", {"type": "Point", "coordinates": place}, figures, assessment)
 
 
@@ -72,11 +127,39 @@ def _area(outline: Outline, assessment: Assessment) -> dict[str, Any]:
     x, y = outline.corners.T
     turned = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) < 0
     corners = outline.corners[::-1] if turned else outline.corners
-    latitudes, longitudes = assessment.frame.to_geographic(np.vstack([corners, corners[:1]]))
-    ring = [[round(float(a), _DIGITS), round(float(b), _DIGITS)] for a, b in zip(longitudes, latitudes, strict=True)]
-    ring[-1] = ring[0]
+    latitudes, longitudes = assessment.frame.to_geographic(corners)
+    places = [on_earth(float(a), float(b)) for a, b in zip(longitudes, latitudes, strict=True)]
     figures = {"name": outline.name, "area": outline.kind, "floor": outline.floor, "ceiling": outline.ceiling}
-    return _feature("area", {"type": "Polygon", "coordinates": [ring]}, figures, assessment)
+    return _feature("area", _polygon(places), figures, assessment)
+
+
+def _polygon(corners: Sequence[tuple[float, float]]) -> dict[str, Any]:
+    """A polygon, or two where the antimeridian cuts it."""
+    longitudes = np.unwrap([longitude for longitude, _ in corners], period=360)
+    ring = [(float(x), y) for x, (_, y) in zip(longitudes, corners, strict=True)]
+    if all(abs(x) <= 180 for x, _ in ring):
+        return {"type": "Polygon", "coordinates": [_closed(ring)]}
+    turned = [[(x + turn, y) for x, y in ring] for turn in (0, 360, -360)]
+    parts = [_west_of(180, _west_of(180, one), turned=True) for one in turned]
+    return {"type": "MultiPolygon", "coordinates": [[_closed(part)] for part in parts if len(part) > 2]}
+
+
+def _closed(ring: Sequence[tuple[float, float]]) -> list[list[float]]:
+    written = [[round(x, _DIGITS), round(y, _DIGITS)] for x, y in ring]
+    return [*written, written[0]]
+
+
+def _west_of(edge: float, ring: list[tuple[float, float]], turned: bool = False) -> list[tuple[float, float]]:
+    """What of a ring lies west of a meridian; turned: east of the opposite one (Sutherland and Hodgman 1974)."""
+    sign = -1 if turned else 1
+    kept: list[tuple[float, float]] = []
+    for (x, y), (before, y_before) in zip(ring, [*ring[-1:], *ring[:-1]], strict=True):
+        if (sign * x > edge) != (sign * before > edge):
+            share = (sign * edge - before) / (x - before)
+            kept.append((sign * edge, _between(y_before, y, share)))
+        if sign * x <= edge:
+            kept.append((x, y))
+    return kept if len({x for x, _ in kept}) > 1 else []
 
 
 def _rally(number: int, place: tuple[float, float]) -> dict[str, Any]:
@@ -91,8 +174,11 @@ def _feature(
 
 
 def _place(longitude: float, latitude: float, altitude: float) -> list[float]:
-    return [round(longitude, _DIGITS), round(latitude, _DIGITS), round(altitude, _CENTIMETRES)]
+    """Without its height where that is not known."""
+    height = [round(altitude, _CENTIMETRES)] if math.isfinite(altitude) else []
+    return [round(longitude, _DIGITS), round(latitude, _DIGITS), *height]
 
 
 def _point(longitude: float, latitude: float) -> dict[str, Any]:
+    longitude, latitude = on_earth(longitude, latitude)
     return {"type": "Point", "coordinates": [round(longitude, _DIGITS), round(latitude, _DIGITS)]}

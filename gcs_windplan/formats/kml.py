@@ -14,6 +14,7 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from gcs_windplan.flight import clock
+from gcs_windplan.formats.geojson import on_earth
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment, Finding, Outline, Stop
@@ -159,7 +160,13 @@ def _point(mark: Xml.Element, longitude: float, latitude: float, altitude: float
 
 
 def _coordinates(parent: Xml.Element, places: Iterable[tuple[float, float, float]]) -> None:
-    _child(parent, "coordinates", " ".join(f"{x:.7f},{y:.7f},{z:.2f}" for x, y, z in places))
+    _child(parent, "coordinates", " ".join(_written(*on_earth(x, y), z) for x, y, z in places))
+
+
+def _written(longitude: float, latitude: float, altitude: float) -> str:
+    """One place, without its height where that is not known."""
+    height = f",{altitude:.2f}" if math.isfinite(altitude) else ""
+    return f"{longitude:.7f},{latitude:.7f}{height}"
 
 
 def _child(parent: Xml.Element, tag: str, text: str | None = None) -> Xml.Element:

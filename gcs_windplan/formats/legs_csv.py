@@ -8,6 +8,8 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from gcs_windplan.formats.geojson import on_earth
+
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment, JudgedLeg, Stop
 
@@ -17,8 +19,8 @@ _COLUMNS: Final[tuple[tuple[str, int, _Cell], ...]] = (
     ("leg", 0, lambda leg, to: leg.number),
     ("to item", 0, lambda leg, to: leg.item),
     ("to", 0, lambda leg, to: to.label),
-    ("to latitude [deg]", 7, lambda leg, to: to.latitude_deg),
-    ("to longitude [deg]", 7, lambda leg, to: to.longitude_deg),
+    ("to latitude [deg]", 7, lambda leg, to: on_earth(to.longitude_deg, to.latitude_deg)[1]),
+    ("to longitude [deg]", 7, lambda leg, to: on_earth(to.longitude_deg, to.latitude_deg)[0]),
     ("to altitude [m AMSL]", 2, lambda leg, to: to.altitude),
     ("to height [m AGL]", 2, lambda leg, to: to.above_ground),
     ("arrival [s]", 1, lambda leg, to: to.seconds),

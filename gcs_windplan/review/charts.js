@@ -26,7 +26,7 @@ function alongTicks(width) {
   if (state.axis === 't') return timeTicks(0, across.high, count).map((t) => [t, clock(t)]);
   const found = ticks(0, across.high / 1000, count);
   const digits = found.length > 1 && found[1] - found[0] < 1 ? (found[1] - found[0] < 0.1 ? 2 : 1) : 0;
-  return found.map((km) => [km * 1000, km.toFixed(digits)]);
+  return found.map((km) => [km * 1000, number(km, digits)]);
 }
 // The other quantity on the upper axis: times over a distance axis and the other way round.
 function otherTicks(width) {
@@ -35,7 +35,7 @@ function otherTicks(width) {
   const high = last(other);
   const marks = state.axis === 'd' ? timeTicks(0, high, count) : ticks(0, high / 1000, count).map((km) => km * 1000);
   const digits = marks.length > 1 && marks[1] - marks[0] < 1000 ? 1 : 0;
-  return marks.map((v) => [mine[nearest(other, v)], state.axis === 'd' ? clock(v) : (v / 1000).toFixed(digits)]);
+  return marks.map((v) => [mine[nearest(other, v)], state.axis === 'd' ? clock(v) : number(v / 1000, digits)]);
 }
 
 function frame(width, height, top, bottom, y, low, high, unit, axes) {
@@ -194,8 +194,9 @@ function drawQuantity(chart, width) {
 const svg = (width, height, text) => `<svg viewBox="0 0 ${width} ${height}" aria-hidden="true">${text}</svg>`;
 const cursorParts = (top, bottom) => `<g class="at" data-top="${top}" data-bottom="${bottom}"></g>`;
 
+const PRINTED = 960; // [px] wide on paper, whatever the window
 function drawCharts() {
-  const width = Math.max(260, Math.round(byId('charts').clientWidth));
+  const width = state.printing ? PRINTED : Math.max(260, Math.round(byId('charts').clientWidth));
   across = scaleX(width);
   for (const chart of charts) (chart.kind === 'heights' ? drawHeights : drawQuantity)(chart, width);
   moveChartCursor();

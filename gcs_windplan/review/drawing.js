@@ -6,14 +6,21 @@ const LETTERS = TWO ? ['A', 'B'] : [''];
 
 const byId = (id) => document.getElementById(id);
 const escape = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
+const HUGE = 1e9; // from here on numbers are written with a power of ten
+const scientific = (value) => {
+  const [head, power] = Math.abs(value).toExponential(1).split('e');
+  return `${value < 0 ? '−' : ''}${Number(head)}×10${[...power.slice(1)].map((digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[digit]).join('')}`;
+};
 const number = (value, digits = 0, sign = false) => {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
+  if (Math.abs(value) >= HUGE) return (sign && value > 0 ? '+' : '') + scientific(value);
   let text = value.toFixed(digits);
   if (Number(text) === 0) text = text.replace('-', '');
   return (sign && Number(text) > 0 ? '+' : '') + text.replace('-', '−');
 };
 const clock = (seconds) => {
   if (seconds === null || !Number.isFinite(seconds)) return '–';
+  if (Math.abs(seconds) >= HUGE) return number(seconds / 60);
   const whole = Math.round(seconds);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
 };
@@ -38,16 +45,18 @@ function ticks(low, high, count, steps = [1, 2, 5, 10]) {
   if (!(rough > 0)) return [low];
   const ten = 10 ** Math.floor(Math.log10(rough));
   const step = ten * steps.find((s) => s * ten >= rough * 0.999);
+  return multiples(step, Math.ceil(low / step - 1e-9), high + step * 1e-9);
+}
+// Multiples of a step from the `first` one on; never many, though numbers be so large that a step is lost in them.
+function multiples(step, first, high) {
   const found = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; i++) found.push(i * step);
+  for (let i = 0; i < 200 && (first + i) * step <= high; i++) found.push((first + i) * step);
   return found;
 }
 const TIME_STEPS = [5, 10, 15, 30, 60, 120, 180, 300, 600, 900, 1800, 3600, 7200, 14400];
 function timeTicks(low, high, count) {
-  const step = TIME_STEPS.find((s) => s * count >= high - low) || 14400;
-  const found = [];
-  for (let t = Math.ceil(low / step) * step; t <= high; t += step) found.push(t);
-  return found;
+  const step = TIME_STEPS.find((s) => s * count >= high - low) || 14400 * 10 ** Math.ceil(Math.log10((high - low) / count / 14400));
+  return multiples(step, Math.ceil(low / step), high);
 }
 
 // A path through places; null breaks it.
@@ -88,7 +97,7 @@ function findingMark(k, i, [x, y], [homeX, homeY], chosen) {
 }
 
 // The cursor: an index into each mission's samples, all at the same place of the axis chosen.
-const state = { axis: 'd', at: MISSIONS.map(() => 0), chosen: null };
+const state = { axis: 'd', at: MISSIONS.map(() => 0), chosen: null, printing: false };
 const listeners = [];
 const axisOf = (k) => MISSIONS[k].track[state.axis];
 const last = (list) => { for (let i = list.length; i--;) if (list[i] !== null) return list[i]; return 0; };

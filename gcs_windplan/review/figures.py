@@ -111,7 +111,7 @@ def _found(assessment: Assessment, *rules: str) -> bool:
 
 
 def _limit(how: str, value: float | None, unit: str, otherwise: str = "no limit given") -> str:
-    return otherwise if value is None else f"{how} {words.number(value, 0 if value == round(value) else 1)} {unit}"
+    return otherwise if value is None else f"{how} {words.number(value, 0 if value % 1 == 0 else 1)} {unit}"
 
 
 def changes(first: Assessment, second: Assessment) -> list[Change]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.transforms import ScaledTranslation
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment import Assessment
@@ -13,11 +14,16 @@ from gcs_windplan.review import sheet, words
 from gcs_windplan.review.places import place_of
 from gcs_windplan.review.png import png_bytes
 from gcs_windplan.review.relief import ground_of, moved
+from gcs_windplan.review.room import Room, rings
 from gcs_windplan.review.side import Side, draw_heights, dress_speeds, side_figure
 from gcs_windplan.terrain import Extent
 
 _PIXELS = 600  # of relief along the longer side
-_SIGNS = {"danger": ("8", "#b8490a"), "warning": ("^", "#ffc94d")}
+_SIGN = 8.0  # [point] half a finding's sign
+_SIGNS = {"danger": ("8", "#b8490a", "white", 0.0), "warning": ("^", "#ffc94d", "#2b1d00", -2.5)}
+_TIE = {"arrowstyle": "-", "lw": 0.9, "color": "#1c2430", "shrinkA": 0, "shrinkB": 0}
+_RINGS = ((0.0, 0.0), *rings(2.1 * _SIGN, 4))
+_AROUND = rings(9.0, 1, first=45.0)  # [point] from a stop to its number
 
 
 def draw_assessment_map(assessments: Sequence[Assessment], dpi: int = 120) -> bytes:
@@ -43,14 +49,18 @@ def draw_assessment_map(assessments: Sequence[Assessment], dpi: int = 120) -> by
         route = sheet.draw_by_speed(axes, lines[0], first.profile.ground_speed[1:])
         figure.colorbar(route, cax=beside, label="ground speed [m/s]")
         stops = np.array([(stop.east, stop.north) for stop in first.stops]).reshape(-1, 2)
-        sheet.draw_stops(axes, stops, [str(stop.number) for stop in first.stops])
+        sheet.draw_circles(axes, stops)
     else:
         beside.remove()
         names = [f"{one.name}: {words.clock(one.sums.seconds)} min" for one in assessments]
         sheet.draw_side_by_side(axes, lines, names)
-    for one in assessments:
-        _draw_findings(axes, one, first)
     sheet.dress(axes, extent, " and ".join(_title(one) for one in assessments))
+    room = Room(axes)
+    for letter, one in zip(("A", "B") if len(assessments) > 1 else ("",), assessments, strict=True):
+        _draw_findings(axes, room, letter, one, first)
+    if len(assessments) == 1:
+        for stop in first.stops:
+            _draw_name(axes, room, stop.east / 1000, stop.north / 1000, str(stop.number))
     return png_bytes(figure, dpi)
 
 
@@ -66,12 +76,13 @@ def draw_assessment_profile(assessment: Assessment, dpi: int = 120) -> bytes:
         assessment.vertical_datum, marks=False,
     )  # fmt: skip
     draw_heights(heights, side)
+    _draw_speeds(speeds, assessment)
+    room = Room(heights)
     for i, finding in enumerate(assessment.findings):
         at = place_of(assessment, finding).sample
         if at is not None:
             x, y = float(profile.distance[at]) / 1000, float(profile.altitude[at])
-            _sign(heights, x, y, finding.severity, str(i + 1))
-    _draw_speeds(speeds, assessment)
+            _sign(heights, room, x, y, finding.severity, str(i + 1))
     return png_bytes(figure, dpi)
 
 
@@ -81,19 +92,34 @@ def _line(assessment: Assessment, first: Assessment) -> FloatArray:
     return moved(places, assessment.frame, first.frame)
 
 
-def _draw_findings(axes: Any, assessment: Assessment, first: Assessment) -> None:
+def _draw_findings(axes: Any, room: Room, letter: str, assessment: Assessment, first: Assessment) -> None:
     """A numbered sign at each finding's place."""
     for i, finding in enumerate(assessment.findings):
         place = place_of(assessment, finding)
         if place.latitude_deg is not None and place.longitude_deg is not None:
             x, y = first.frame.to_local(place.latitude_deg, place.longitude_deg)[0] / 1000
-            _sign(axes, x, y, finding.severity, str(i + 1))
+            _sign(axes, room, x, y, finding.severity, f"{letter}{i + 1}")
 
 
-def _sign(axes: Any, x: float, y: float, severity: str, text: str) -> None:
-    marker, colour = _SIGNS[severity]
-    axes.plot(x, y, marker, ms=11, mfc=colour, mec="black", mew=0.9, zorder=14)
-    sheet.label(axes, x, y, text, size=8.5, offset=(7, 6))
+def _sign(axes: Any, room: Room, x: float, y: float, severity: str, text: str) -> None:
+    """A finding's sign with its number, where it belongs or tied to it from beside."""
+    marker, fill, ink, centre = _SIGNS[severity]
+    dx, dy = room.beside(x, y, (_SIGN, _SIGN), _RINGS) or (0.0, 0.0)
+    if dx or dy:
+        axes.annotate("", (x, y), xytext=(dx, dy), textcoords="offset points", arrowprops=_TIE, zorder=13)
+    there = axes.transData + ScaledTranslation(dx / 72, dy / 72, axes.figure.dpi_scale_trans)
+    axes.plot(x, y, marker, ms=2 * _SIGN, mfc=fill, mec="black", mew=0.9, zorder=14, transform=there)
+    axes.annotate(
+        text, (x, y), xytext=(dx, dy + centre), textcoords="offset points", ha="center", va="center",
+        fontsize=7.5 if len(text) < 3 else 6, fontweight="bold", color=ink, zorder=15,
+    )  # fmt: skip
+
+
+def _draw_name(axes: Any, room: Room, x: float, y: float, text: str) -> None:
+    """A stop's number beside it, if there is room."""
+    place = room.beside(x, y, (2.5 * len(text) + 1, 4.0), _AROUND)
+    if place is not None:
+        sheet.label(axes, x, y, text, size=7.5, offset=place, centred=True)
 
 
 def _draw_speeds(axes: Any, assessment: Assessment) -> None:
@@ -111,4 +137,4 @@ def _draw_speeds(axes: Any, assessment: Assessment) -> None:
 
 def _title(assessment: Assessment) -> str:
     found = words.counts(assessment.findings) or "nothing found"
-    return f"{assessment.name}: {assessment.sums.length / 1000:.2f} km, {found}"
+    return f"{assessment.name}: {words.number(assessment.sums.length / 1000, 2)} km, {found}"

@@ -38,8 +38,9 @@ function drawWind() {
 const windClass = (along) => (along === null ? 3 : Math.round(((Math.max(-1, Math.min(1, along / alongMost)) + 1) / 2) * (WINDS.length - 1)));
 function drawRoute(k) {
   const { track } = MISSIONS[k], xs = track.e.map((e) => e === null ? null : toX(e)), ys = track.n.map((n) => n === null ? null : toY(n));
-  let text = `<path class="casing" d="${path(xs, ys)}"/>`;
-  if (TWO) return text + `<path class="way r${k}" d="${path(xs, ys)}"/>`;
+  const casing = `<path class="casing${TWO ? ' wide' : ''}" d="${path(xs, ys)}"/>`;
+  if (TWO) return [casing, ['edge ', ''].map((edge) => `<path class="${edge}way r${k}" d="${path(xs, ys)}"/>`).join('')];
+  let text = '';
   for (let i = 0; i < xs.length - 1;) {
     const colour = windClass(track.along[i]);
     let j = i + 1;
@@ -47,7 +48,12 @@ function drawRoute(k) {
     text += `<path class="way" stroke="${WINDS[colour]}" d="${path(xs.slice(i, j + 1), ys.slice(i, j + 1))}"/>`;
     i = j;
   }
-  return text;
+  return [casing, text];
+}
+// All casings first: where two routes coincide, B lies as a narrow dashed line on the wide one of A.
+function drawRoutes() {
+  const drawn = MISSIONS.map((_, k) => drawRoute(k));
+  return drawn.map(([casing]) => casing).join('') + drawn.map(([, way]) => way).join('');
 }
 
 // Of many stops each fifth or tenth is numbered.
@@ -100,30 +106,54 @@ function drawFurniture() {
   const label = nice >= 1000 ? `${+(nice / 1000).toFixed(1)} km` : `${+nice.toFixed(1)} m`;
   let text = `<rect class="panel" x="8" y="${y - 20}" width="${px(bar + 20)}" height="30" rx="4"/>` +
     `<path class="furniture-line" d="M18 ${y - 3}v6h${px(bar)}v-6"/><text class="furniture-text" x="18" y="${y - 7}">${label}</text>`;
-  text += `<g transform="translate(${width - 24} 30)"><circle class="panel" r="17"/><path class="furniture" d="M0-13 6 8 0 4-6 8z"/></g>` +
-    `<text class="name north" x="${width - 24}" y="60">N</text>`;
+  const busy = MISSIONS.some(({ stops }) => stops.some(([, , e, n]) => toX(e) > width - 90 && toY(n) < 80));
+  const arrowX = busy ? 24 : width - 24;
+  text += `<g transform="translate(${arrowX} 30)"><circle class="panel" r="17"/><path class="furniture" d="M0-13 6 8 0 4-6 8z"/></g>` +
+    `<text class="name north" x="${arrowX}" y="60">N</text>`;
   return text;
 }
 
-// The plates are as high as the map needs, and leave room for the profile on the same screen.
-const BESIDE = 475; // [px] of what stands above and below the plates down to the foot of the profile
+// The map's plate has the ground's shape, the scene takes what is left beside it, and the profile has room on the same
+// screen. On paper the same, in shares of the width.
+const ABOVE_PROFILE = 475; // [px] of what stands above and below the plates down to the foot of the profile
+const WIDE = { query: '(min-width: 1100px)', legend: 172, spared: 40 }; // [px] the legend beside the map, and what that spares
+const SHAPE = (MAP.east - MAP.west) / (MAP.north - MAP.south);
+const within = (value, low, high) => Math.max(low, Math.min(high, value));
+function shared(width, most) {
+  const map = within(most * SHAPE, 0.2 * width, 0.62 * width), height = within(map / SHAPE, 0.6 * most, most);
+  return { map, scene: width - map, height };
+}
+const columns = ({ map, scene }) => `minmax(0, ${map.toFixed(1)}fr) minmax(0, ${scene.toFixed(1)}fr)`;
+const PAPER = shared(820, 295); // [px]
 function fitPlates() {
-  const high = (plate.clientWidth * (MAP.north - MAP.south)) / (MAP.east - MAP.west);
-  const most = window.innerWidth < 820 ? 420 : Math.min(560, window.innerHeight - BESIDE);
-  const height = `${Math.round(Math.max(280, Math.min(most, high)))}px`;
-  for (const one of document.querySelectorAll('.plate')) one.style.height = height;
+  const where = byId('where'), room = where.clientWidth;
+  let [low, high] = [within(room / SHAPE, 200, 0.8 * window.innerHeight), within(0.8 * room, 240, 420)];
+  if (!window.matchMedia('(max-width: 820px)').matches) {
+    const { legend, spared } = window.matchMedia(WIDE.query).matches ? WIDE : { legend: 0, spared: 0 };
+    const screen = shared(room - 16 - legend, within(window.innerHeight - ABOVE_PROFILE + spared, 280, 560));
+    where.style.setProperty('--columns', columns({ ...screen, map: screen.map + legend }));
+    low = high = screen.height;
+  }
+  plate.style.height = `${Math.round(low)}px`;
+  byId('scene').style.height = `${Math.round(high)}px`;
+}
+function shapePaper() {
+  const { style } = byId('where');
+  style.setProperty('--paper-columns', columns(PAPER));
+  style.setProperty('--paper-map', PAPER.map / PAPER.height);
+  style.setProperty('--paper-scene', PAPER.scene / PAPER.height);
+  style.setProperty('--shape', within(SHAPE, 0.5, 2.5));
 }
 
 function drawMap() {
   fitPlates();
-  view.width = plate.clientWidth || 600;
-  view.height = plate.clientHeight || 400;
+  view.width = state.printing ? PAPER.map : plate.clientWidth || 600;
+  view.height = state.printing ? PAPER.height : plate.clientHeight || 400;
   const x = toX(MAP.west), y = toY(MAP.north), taken = [];
   let text = '<defs><pattern id="hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><path class="hatched" d="M0 0V7"/></pattern></defs>' +
     `<image href="${MAP.picture}" x="${px(x)}" y="${px(y)}" width="${px(toX(MAP.east) - x)}" height="${px(toY(MAP.south) - y)}" preserveAspectRatio="none"/>`;
   const [areas, names] = drawAreas();
-  text += areas + drawWind();
-  MISSIONS.forEach((_, k) => { text += drawRoute(k); });
+  text += areas + drawWind() + drawRoutes();
   MISSIONS.forEach((_, k) => { text += drawStops(k, taken); });
   for (const [e, n] of MAP.rally) text += `<path class="rally" d="M${px(toX(e))} ${px(toY(n) - 8)}l7 8-7 8-7-8z"><title>rally point</title></path>`;
   text += names + '<g id="here"></g>';
@@ -191,6 +221,7 @@ function showPlace(e, n) {
 
 function openMap() {
   legendOfMap();
+  shapePaper();
   let held = null;
   for (const button of document.querySelectorAll('[data-map]')) {
     button.addEventListener('click', () => {

@@ -36,8 +36,13 @@ const seen = new IntersectionObserver((entries) => {
 }, { rootMargin: '300px' });
 seen.observe(byId('scene'));
 let folded = [];
+const onPaper = (printing) => { state.printing = printing; redraw(); };
 window.addEventListener('beforeprint', () => {
+  onPaper(true);
   folded = [...document.querySelectorAll('details:not([open])')];
   for (const one of folded) one.open = true;
 });
-window.addEventListener('afterprint', () => { for (const one of folded) one.open = false; });
+window.addEventListener('afterprint', () => {
+  onPaper(false);
+  for (const one of folded) one.open = false;
+});

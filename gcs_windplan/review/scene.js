@@ -63,7 +63,8 @@ class Scene {
 
   x(east) { return east - this.middle.east; }
   z(north) { return this.middle.north - north; }
-  up(height) { return (height - this.base) * MESH.exaggeration; }
+  // Absurd heights end far above or below the ground, where they do not spoil what is near.
+  up(height) { return within((height - this.base) * MESH.exaggeration, -5 * this.size, 5 * this.size); }
   spot(east, north, height) { return new this.THREE.Vector3(this.x(east), this.up(height), this.z(north)); }
 
   groundAt(east, north) {
@@ -133,11 +134,11 @@ class Scene {
   }
 
   // Rods between pairs of places, all in one draw; `tip` makes them cones.
-  rods(pairs, radius, colours, tip = false) {
+  rods(pairs, radius, colours, tip = false, look = {}) {
     const { THREE } = this;
     if (!pairs.length) return;
     const geometry = new THREE.CylinderGeometry(tip ? 0 : 1, 1, 1, tip ? 10 : 8, 1, false);
-    const mesh = new THREE.InstancedMesh(geometry, new THREE.MeshBasicMaterial(), pairs.length);
+    const mesh = new THREE.InstancedMesh(geometry, new THREE.MeshBasicMaterial(look), pairs.length);
     const rod = new THREE.Object3D(), up = new THREE.Vector3(0, 1, 0);
     pairs.forEach(([from, to], i) => {
       const way = to.clone().sub(from), length = way.length() || 1e-6;
@@ -149,6 +150,26 @@ class Scene {
       mesh.setColorAt(i, new THREE.Color(colours[i]));
     });
     this.world.add(mesh);
+    return mesh;
+  }
+
+  // Every other piece of a way, with its colours.
+  dashes(pairs, colours) {
+    const pieces = [], tints = [], long = this.size / 70;
+    let gone = 0;
+    pairs.forEach(([from, to], i) => {
+      const length = from.distanceTo(to);
+      for (let at = 0; at < length;) {
+        const next = Math.min(length, at + long - (gone % long) + long * 1e-6);
+        if (Math.floor(gone / long) % 2 === 0) {
+          pieces.push([from.clone().lerp(to, at / length), from.clone().lerp(to, next / length)]);
+          tints.push(colours[i]);
+        }
+        gone += next - at;
+        at = next;
+      }
+    });
+    return [pieces, tints];
   }
 
   addRoute(k) {
@@ -168,7 +189,12 @@ class Scene {
       }
       before = spot;
     }
-    this.rods(pairs, 0.0028 * this.size, colours);
+    const [pieces, tints] = this.dashes(pairs, colours);
+    if (k) this.rods(pieces, 0.0034 * this.size, tints); // A shows in the gaps where both coincide
+    else this.rods(pairs, 0.0028 * this.size, colours);
+    // Through the ground the way is seen faint and dashed: it may be below it, or the drawn ground coarser than the real.
+    const hidden = this.rods(pieces, 0.0022 * this.size, tints, false, { depthTest: false, depthWrite: false, transparent: true, opacity: 0.7 });
+    if (hidden) hidden.renderOrder = 3;
     this.shape(curtain, indices, { color: TWO ? plain : '#1c2430', transparent: true, opacity: 0.22, depthWrite: false });
     const ball = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 12, 8), new THREE.MeshBasicMaterial({ color: 0xffffff }), stops.length);
     const one = new THREE.Object3D();
@@ -273,9 +299,8 @@ class Scene {
     this.target.x = this.target.z = 0;
   }
   // From where the ground just fills the view.
-  fitting() {
+  fitting(aspect = (this.place.clientWidth || 3) / (this.place.clientHeight || 2)) {
     const width = MAP.east - MAP.west, depth = MAP.north - MAP.south, half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const aspect = (this.place.clientWidth || 3) / (this.place.clientHeight || 2);
     return Math.max((0.52 * Math.hypot(width, 0.45 * depth)) / (half * aspect) + 0.25 * depth, (0.42 * Math.hypot(depth, 0.5 * width)) / half + 0.2 * depth);
   }
   turn(azimuth, slant) {
@@ -345,6 +370,21 @@ class Scene {
     this.cursor();
   }
 
+  // The same view in the shape that it has on paper.
+  picture(shape) {
+    const { camera, place, renderer, away } = this, height = 640;
+    this.away *= this.fitting(shape) / this.fitting();
+    renderer.setSize(Math.round(height * shape), height, false);
+    camera.aspect = shape;
+    camera.updateProjectionMatrix();
+    this.paint();
+    const drawn = renderer.domElement.toDataURL('image/png');
+    this.away = away;
+    renderer.setSize(place.clientWidth, place.clientHeight, false);
+    this.resize();
+    return drawn;
+  }
+
   draw() {
     if (this.waiting) return;
     this.waiting = requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
@@ -381,5 +421,5 @@ async function openScene() {
   new ResizeObserver(() => scene.resize()).observe(place);
   const deeds = { left: () => scene.turn(0.3, 0), right: () => scene.turn(-0.3, 0), in: () => scene.zoom(0.8), out: () => scene.zoom(1.25), whole: () => { scene.whole(); scene.draw(); } };
   for (const button of document.querySelectorAll('[data-scene]')) button.addEventListener('click', deeds[button.dataset.scene]);
-  window.addEventListener('beforeprint', () => { scene.paint(); scene.still.src = scene.renderer.domElement.toDataURL('image/png'); });
+  window.addEventListener('beforeprint', () => { scene.still.src = scene.picture(PAPER.scene / PAPER.height); });
 }

@@ -124,7 +124,7 @@ def draw_by_speed(axes: Any, line: FloatArray, speeds: FloatArray) -> LineCollec
 
 def draw_stops(axes: Any, line: FloatArray, names: Sequence[str], taken: Sequence[FloatArray] = ()) -> None:
     """Circles at places (n, 2) [m], with names as far as they do not lie on each other or on a place that is taken."""
-    axes.plot(line[:, 0] / 1000, line[:, 1] / 1000, "o", ms=4.5, mfc="white", mec="black", mew=0.9, zorder=6)
+    draw_circles(axes, line)
     apart = _LABEL_ROOM * float(np.ptp(line, axis=0).max())
     named = list(taken)
     for name, place in zip(names, line, strict=True):
@@ -133,22 +133,32 @@ def draw_stops(axes: Any, line: FloatArray, names: Sequence[str], taken: Sequenc
             named.append(place)
 
 
+def draw_circles(axes: Any, line: FloatArray) -> None:
+    """Circles at places (n, 2) [m]."""
+    axes.plot(line[:, 0] / 1000, line[:, 1] / 1000, "o", ms=4.5, mfc="white", mec="black", mew=0.9, zorder=6)
+
+
 def draw_side_by_side(axes: Any, lines: Sequence[FloatArray], names: Sequence[str]) -> None:
     """Several routes (n, 2) [m], told apart by colour and dash."""
     for i, (line, name) in enumerate(zip(lines, names, strict=True)):
+        km, width = line / 1000, 2.2 + 1.6 * (len(lines) - 1 - i)  # where they coincide each shows beside the next
+        axes.plot(km[:, 0], km[:, 1], color="white", lw=width + 2, zorder=4)
         axes.plot(
-            line[:, 0] / 1000, line[:, 1] / 1000, color=_ROUTES[i % 4], ls=_DASHES[i % 4], lw=2.4, zorder=5 + i,
-            label=name, path_effects=[Stroke(linewidth=4.4, foreground="white"), Normal()],
+            km[:, 0], km[:, 1], color=_ROUTES[i % 4], ls=_DASHES[i % 4], lw=width, zorder=5 + i, label=name,
+            dash_capstyle="butt", path_effects=[Stroke(linewidth=width + 1.2, foreground="white"), Normal()],
         )  # fmt: skip
     below = -0.48 * float(axes.figure.dpi) / float(axes.bbox.height)
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, below), ncols=2, frameon=False, fontsize=9)
 
 
-def label(axes: Any, x: float, y: float, text: str, size: float, offset: tuple[int, int]) -> None:
-    """A word on the map with a white halo."""
+def label(
+    axes: Any, x: float, y: float, text: str, size: float, offset: tuple[float, float], centred: bool = False
+) -> None:
+    """A word on the map with a white halo; the offset [point] is to its lower left corner or its centre."""
+    aligned = {"ha": "center", "va": "center"} if centred else {}
     axes.annotate(
         text, (x, y), xytext=offset, textcoords="offset points", fontsize=size, zorder=13,
-        path_effects=[Stroke(linewidth=2.4, foreground="white"), Normal()],
+        path_effects=[Stroke(linewidth=2.4, foreground="white"), Normal()], **aligned,
     )  # fmt: skip
 
 

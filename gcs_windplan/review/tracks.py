@@ -178,7 +178,8 @@ def _exaggeration(size: float, height: float) -> float:
 
 def _rounded(values: ArrayLike, digits: int) -> list[Any]:
     """Numbers for JSON: rounded, whole ones as such, null where not finite."""
-    listed = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+    with np.errstate(over="ignore", invalid="ignore"):  # the largest numbers have no digits to round
+        listed = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
     return [None if not math.isfinite(x) else int(x) if x == int(x) else x for x in listed]
 
 

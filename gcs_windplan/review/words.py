@@ -13,6 +13,8 @@ from gcs_windplan.assessment import Assessment, Finding, Verdict
 
 NOTHING = "–"  # where something is not known
 _JOULES = 3600.0  # in a Wh
+_HUGE = 1e9  # from here on numbers are written with a power of ten
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 VERDICTS: dict[Verdict, str] = {
     "clear": "Clear: nothing found",
@@ -27,23 +29,35 @@ def number(value: float | None, digits: int = 0, sign: bool = False) -> str:
         return NOTHING
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
+    if abs(value) >= _HUGE:
+        return ("+" if sign and value > 0 else "") + _scientific(value)
     text = f"{value:{'+' if sign else ''}.{digits}f}"
     if float(text) == 0:
         text = text.lstrip("+-")
     return text.replace("-", "−")
 
 
+def _scientific(value: float) -> str:
+    """`1×10³⁰`, with a decimal where it has one."""
+    head, power = f"{value:.1e}".split("e")
+    return f"{float(head):g}×10{str(int(power)).translate(_RAISED)}".replace("-", "−")
+
+
 def clock(seconds: float | None) -> str:
     """A duration as minutes and seconds: 18:05; `never` where it does not end."""
     if seconds is None or math.isnan(seconds):
         return NOTHING
-    return flight.clock(seconds) if math.isfinite(seconds) else "never"
+    if math.isinf(seconds):
+        return "never"
+    return flight.clock(seconds) if abs(seconds) < _HUGE else number(seconds / 60)
 
 
 def clock_difference(seconds: float) -> str:
     """A difference of durations: +1:05."""
+    if not math.isfinite(seconds):
+        return NOTHING
     sign = "+" if round(seconds) > 0 else "−" if round(seconds) < 0 else ""
-    return sign + flight.clock(abs(seconds))
+    return sign + clock(abs(seconds))
 
 
 def watt_hours(joules: float | None) -> float | None:
@@ -74,6 +88,8 @@ def against_limit(finding: Finding) -> str:
 
 def _short(value: float) -> str:
     """Enough figures to tell a number from its limit."""
+    if not math.isfinite(value):
+        return NOTHING
     return number(value, 0 if abs(value) >= 1000 or value == round(value) else 1 if abs(value) >= 10 else 2)
 
 

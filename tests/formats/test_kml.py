@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from xml.etree import ElementTree as Xml
 
@@ -90,3 +91,14 @@ def test_every_style_that_is_named_is_there(document):
 
 def test_the_same_review_gives_the_same_text():
     assert format_kml(REVIEW) == format_kml(REVIEW)
+
+
+def test_longitudes_and_latitudes_stay_on_earth():
+    profile = REVIEW.profile
+    far = replace(profile, longitude_deg=profile.longitude_deg + 175, latitude_deg=profile.latitude_deg + 43.2)
+    text = format_kml(replace(REVIEW, profile=far))
+    line = places(Xml.fromstring(text.encode()).find(".//k:LineString", SPACE))
+    assert far.longitude_deg.max() > 180
+    assert far.latitude_deg.max() > 90
+    assert np.abs(line[:, 0]).max() <= 180
+    assert np.abs(line[:, 1]).max() <= 90

@@ -129,6 +129,25 @@ def empty() -> Assessment:
     return replace(mission, legs=(), stops=(), findings=(), profile=type(mission.profile)(**profile))
 
 
+def absurd(height: float) -> Assessment:
+    """A mission with one stop at an absurd height, and figures to match."""
+    mission = made.assessment(f"absurd {height:g}")
+    profile, stops = mission.profile, list(mission.stops)
+    high = profile.altitude.copy()
+    high[len(high) // 2] = height
+    stops[4] = replace(stops[4], altitude=height, above_ground=height, left=-1e30, return_energy=np.nan)
+    strange = np.where(profile.leg == 3, np.nan, np.where(profile.leg == 4, 1e300, profile.power))
+    long = profile.seconds * 1e27
+    finding = replace(mission.findings[0], value=np.nan, limit=np.inf)
+    return replace(
+        mission,
+        profile=replace(profile, altitude=high, power=strange, seconds=long, distance=profile.distance * 1e27),
+        stops=tuple(stops),
+        sums=replace(mission.sums, seconds=1e30, length=abs(height), height=abs(height), energy=np.nan, left=np.nan),
+        findings=(finding, *mission.findings[1:]),
+    )
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 @pytest.mark.parametrize(
@@ -151,12 +170,72 @@ def test_it_opens_without_network_or_complaint(show, missions, size, scheme) -> 
 
 
 @pytest.mark.parametrize(
-    "mission", [made.clear(), unknown(), empty(), made.assessment("long", stops=700)], ids=lambda m: m.name
+    "mission",
+    [
+        made.clear(),
+        unknown(),
+        empty(),
+        made.assessment("long", stops=700),
+        absurd(1e30),
+        absurd(-1e30),
+        absurd(1.7e308),
+    ],
+    ids=lambda m: m.name,
 )
 def test_odd_missions_draw_without_complaint(show, mission) -> None:
     opened = show(mission)
     opened.draw_scene()
     assert opened.complaints == []
+    assert opened.page.locator("#map svg image").count() == 1
+    assert opened.page.locator(".chart[data-chart=heights] .plot svg").count() == 1
+    assert opened.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert "NaN" not in opened.page.locator("#where").inner_html()
+
+
+@pytest.mark.parametrize("shape", [0.4, 1.0, 1.6])
+def test_the_map_fills_its_frame(show, shape) -> None:
+    mission = made.assessment()
+    ground = mission.ground
+    middle, half = 0.5 * (ground.north[0] + ground.north[-1]), 0.5 * np.ptp(ground.east) / shape
+    north = np.linspace(middle - half, middle + half, len(ground.north))
+    opened = show(replace(mission, ground=replace(ground, north=north)))
+    frame = opened.place_of("#map")
+    image = opened.page.locator("#map image").bounding_box()
+    filled = image["width"] * image["height"] / (frame["width"] * frame["height"])
+    assert filled > (0.95 if shape >= 1 else 0.65)
+    assert opened.place_of("#scene")["width"] > 0.35 * opened.place_of(".where")["width"]
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+def test_the_totals_leave_no_cell_empty(show, size) -> None:
+    mission = made.assessment()
+    for gust in (10.2, None):  # an even and an odd number of cells
+        opened = show(replace(mission, sums=replace(mission.sums, gust=gust)), size=size)
+        whole = opened.page.locator(".figures").bounding_box()
+        cells = [cell.bounding_box() for cell in opened.page.locator(".figures > div").all()]
+        assert max(cell["x"] + cell["width"] for cell in cells[-1:]) == pytest.approx(
+            whole["x"] + whole["width"], abs=2
+        )
+
+
+def test_routes_that_coincide_are_both_seen(show) -> None:
+    opened = show(made.assessment("a"), made.assessment("b"))
+    opened.page.locator("#map").scroll_into_view_if_needed()
+    pixels = pixels_of(opened.page.locator("#map").screenshot()).astype(int)
+    for colour in ((0x00, 0x72, 0xB2), (0xA3, 0x33, 0x6F)):
+        assert (np.abs(pixels - colour).sum(axis=2) < 40).sum() > 300
+
+
+def test_a_route_below_the_ground_is_seen_in_the_scene(show) -> None:
+    mission = made.clear()
+    deep = replace(mission, profile=replace(mission.profile, altitude=mission.profile.ground - 100))
+    nowhere = replace(mission, profile=replace(mission.profile, altitude=np.full_like(mission.profile.ground, np.nan)))
+    drawn = []
+    for one in (deep, nowhere):
+        opened = show(replace(one, stops=()))
+        opened.draw_scene()
+        drawn.append(pixels_of(opened.page.locator("#scene canvas").screenshot()).astype(int))
+    assert (np.abs(drawn[0] - drawn[1]).sum(axis=2) > 60).sum() > 200
 
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
@@ -311,6 +390,28 @@ def test_it_prints_light_with_a_still_of_the_scene(show, tmp_path) -> None:
     opened.page.evaluate("dispatchEvent(new Event('beforeprint'))")
     opened.page.wait_for_function("document.querySelector('#scene .still').naturalWidth > 0")
     assert opened.page.pdf(print_background=True)[:5] == b"%PDF-"
+    assert opened.complaints == []
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+@pytest.mark.parametrize("browser", ["3d", "flat"])
+def test_on_paper_the_map_fills_its_frame_and_no_chart_is_cut(show, size, browser) -> None:
+    opened = show(made.assessment(), size=size, browser=browser)
+    if browser == "3d":
+        opened.draw_scene()
+    a4_without_margins = {"width": 688, "height": 1017}
+    opened.page.set_viewport_size(a4_without_margins)
+    opened.page.emulate_media(media="print")
+    opened.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    opened.page.wait_for_timeout(200)
+    frame, image = (opened.page.locator(one).bounding_box() for one in ("#map", "#map image"))
+    assert image["width"] * image["height"] > 0.9 * frame["width"] * frame["height"]
+    assert frame["height"] < 0.35 * a4_without_margins["height"]
+    assert opened.page.locator("#charts").bounding_box()["height"] < 0.6 * a4_without_margins["height"]
+    for kept in (".chart", "figure.map", ".figures", "tbody tr", ".findings li"):
+        wanted = opened.page.locator(kept).first.evaluate("one => getComputedStyle(one).breakInside")
+        assert wanted == "avoid"
+    opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert opened.complaints == []
 
 

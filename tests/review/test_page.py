@@ -6,6 +6,7 @@ import base64
 import gzip
 import hashlib
 import json
+import math
 import re
 import time
 from dataclasses import replace
@@ -17,7 +18,7 @@ import pytest
 from gcs_windplan.assessment import Assessment, Finding, Source, assess_plan
 from gcs_windplan.errors import InputError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.review import page, render_page
+from gcs_windplan.review import page, render_page, words
 from gcs_windplan.review.places import Place, place_of
 from tests.review import made
 
@@ -255,6 +256,26 @@ def test_what_is_not_known_is_a_dash_and_null() -> None:
     assert "never" in text_of(tree_of(page))
     assert set(numbers_of(page)["missions"][0]["track"]["g"]) == {None}
     tree_of(render_page([unknown, mission]))
+
+
+def test_a_finding_without_a_finite_number_has_a_dash() -> None:
+    finding = Finding("battery", "danger", "it draws too much", value=math.nan, limit=math.inf, unit="Wh")
+    assert words.against_limit(finding) == "– Wh, limit – Wh"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1e30, "1×10³⁰"), (-2.26e12, "−2.3×10¹²"), (999_999_999.0, "999999999"), (math.nan, "–"), (math.inf, "∞")],
+)
+def test_absurd_numbers_are_short(value: float, text: str) -> None:
+    assert words.number(value) == text
+
+
+def test_absurd_durations_are_short() -> None:
+    assert words.clock(6e30) == "1×10²⁹"
+    assert words.clock(math.inf) == "never"
+    assert words.clock_difference(-6e30) == "−1×10²⁹"
+    assert words.clock_difference(math.nan) == "–"
 
 
 def test_a_mission_without_legs_has_a_page() -> None:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gcs_windplan.review import draw_assessment_map, draw_assessment_profile
+from gcs_windplan.review import draw_assessment_map, draw_assessment_profile, sheet
 from gcs_windplan.review.relief import Ground, contour_step, shade
+from gcs_windplan.review.room import Room, rings
+from gcs_windplan.terrain import Extent
 from tests.review import made
 
 
@@ -42,6 +44,37 @@ def test_two_missions_lie_on_one_map() -> None:
     drawn = draw_assessment_map([made.assessment("a"), made.assessment("b", shift=300.0)])
     assert has_colour(drawn, (0x00, 0x72, 0xB2))
     assert has_colour(drawn, (0xD5, 0x5E, 0x00))
+
+
+def test_routes_that_coincide_are_both_seen() -> None:
+    drawn = pixels(draw_assessment_map([made.assessment("a"), made.assessment("b")])).astype(int)
+    for colour in ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)):
+        assert (np.abs(drawn - colour).sum(axis=2) < 8).sum() > 500
+
+
+def test_stops_do_not_cover_findings() -> None:
+    """A sign has as many pixels of its colour with many stops about it as with few."""
+    few, many = made.assessment(stops=9), made.assessment(stops=9)
+    crowded = replace(many, stops=tuple(stop for stop in many.stops for _ in range(12)))
+    counts = []
+    for one in (few, crowded):
+        drawn = pixels(draw_assessment_map([one])).astype(int)
+        counts.append((np.abs(drawn - DANGER).sum(axis=2) < 8).sum())
+    assert counts[1] >= 0.98 * counts[0]
+
+
+def test_what_stands_on_a_drawing_keeps_its_room() -> None:
+    _, axes, _ = sheet.sheet(Extent(0, 0, 1000, 1000))
+    sheet.dress(axes, Extent(0, 0, 1000, 1000), "")
+    room = Room(axes)
+    half, around = (6.0, 4.0), ((0.0, 0.0), *rings(13.0, 1))
+    taken = [room.beside(0.5, 0.5, half, around) for _ in range(12)]
+    placed = np.array([offset for offset in taken if offset is not None])
+    assert len(placed) < 12  # then it is full
+    for i, one in enumerate(placed):
+        apart = np.abs(placed[:i] - one)
+        assert ((apart[:, 0] >= 12) | (apart[:, 1] >= 8)).all()
+    assert room.beside(0.0, 0.5, half, around)[0] > 0  # not over the edge
 
 
 def test_what_is_not_known_is_left_out() -> None:
