@@ -194,8 +194,8 @@ class Source:
 class Sums:
     """The whole mission: times [s], lengths and heights [m], energy [J] and share of the battery left at the end.
 
-    `seconds` from arming to disarmed, with take-off, holds and landing; `wind` and `gust` the strongest met [m/s].
-    `reserve` is what must be left as a share of the capacity.
+    `seconds` from arming to disarmed, with take-off, holds and landing; `wind` and `gust` the strongest met [m/s],
+    in any member of an ensemble. `reserve` is what must be left as a share of the capacity.
     """
 
     seconds: float

@@ -18,9 +18,10 @@ from gcs_windplan.wind.field import WindField
 class Case:
     """A mission and what it is judged by; terrain, wind and areas are seen from `frame`.
 
-    `wind` tells seconds since the `departure`, `gusts` are its gusts, one field a member. The autopilot keeps `pace`,
-    of which `airspeed` is the most that the vehicle reaches; `cruise` [m/s] is its own, which a fixed-wing holds.
-    Energy is known with an `airframe`. `home_is_given`: home's altitude is the pilot's, and counts as it is.
+    `wind` tells seconds since the `departure`, `gusts` are its gusts, one field a member. Of an ensemble it is the mean
+    of the `members`, and the share `robust` of them is to be flown in. The autopilot keeps `pace`, of which `airspeed`
+    is the most that the vehicle reaches; `cruise` [m/s] is its own, which a fixed-wing holds. Energy is known with an
+    `airframe`. `home_is_given`: home's altitude is the pilot's, and counts as it is.
     """
 
     name: str
@@ -35,6 +36,8 @@ class Case:
     limits: Limits = field(default_factory=Limits)
     airframe: Airframe | None = None
     gusts: tuple[WindField, ...] = ()
+    members: tuple[WindField, ...] = ()
+    robust: float = 0.5
     airspace: Airspace = field(default_factory=Airspace)
     obstacles: Obstacles | None = None
     departure: datetime | None = None

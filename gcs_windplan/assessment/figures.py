@@ -172,13 +172,12 @@ def _leg(number: int, i: int, means: _Means, flown: Flown, heights: Heights) -> 
     )
 
 
-def sums_of(mission: Judged, gust: float | None, reserve: float | None) -> Sums:
-    """The whole mission; `gust` is the strongest met [m/s], `reserve` what must be left."""
+def sums_of(mission: Judged, wind: float, gust: float | None, reserve: float | None) -> Sums:
+    """The whole mission; `wind` and `gust` are the strongest met [m/s], `reserve` what must be left."""
     flown, track, legs = mission.flown, mission.track, mission.legs
     kinds = np.array([move.kind for move in track.moves])
     clearances = [leg.clearance for leg in legs if not math.isnan(leg.clearance)]
     peaks = [leg.height for leg in legs if not math.isnan(leg.height)]
-    blowing = np.hypot(flown.wind.winds[:, 0], flown.wind.winds[:, 1])
     used = drawn(flown, mission.case)
     return Sums(
         seconds=math.inf if flown.stopped.any() else float(flown.begins[-1]),
@@ -190,7 +189,7 @@ def sums_of(mission: Judged, gust: float | None, reserve: float | None) -> Sums:
         descent=math.fsum(max(-leg.climb, 0.0) for leg in legs),
         clearance=min(clearances, default=math.nan),
         height=max(peaks, default=math.nan),
-        wind=float(np.nanmax(blowing, initial=0.0)),
+        wind=wind,
         gust=gust,
         energy=None if flown.energies is None else math.fsum(flown.energies),
         left=None if used is None else float(1 - used[-1]),

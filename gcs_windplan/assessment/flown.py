@@ -11,9 +11,9 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.known import KnownWind, known_wind
-from gcs_windplan.assessment.motion import Going, Motion, motion_in, waiting_watts, watts
+from gcs_windplan.assessment.motion import Going, Motion, circling_watts, energy, motion_in, waiting_watts, watts
 from gcs_windplan.assessment.track import Track
-from gcs_windplan.mission.duration import time_course
+from gcs_windplan.mission.duration import circling_seconds, circling_speed, time_course
 
 _FEWEST, _MOST = 4, 160  # samples of a piece
 _MOST_ALL: Final = 60_000  # samples of a mission
@@ -167,7 +167,7 @@ def _moving(track: Track, samples: Samples, winds: FloatArray, case: Case) -> tu
     if case.hovers:
         course = replace(track.course, moves=track.moves)
         times = time_course(course, means, case.pace)
-        seconds = times.seconds - np.array([move.hold for move in track.moves])
+        seconds = times.seconds - np.array([move.hold for move in track.moves]) - _circling(track, case)
         straight = np.linalg.norm([np.subtract(move.end, move.start) for move in track.moves], axis=1)
         peaks = np.where(times.peaks > 0, times.peaks, _speeds_upright(track, case))
         curves = np.maximum(lengths - straight, 0.0) / np.maximum(peaks, 0.01)  # by how much a curve is longer
@@ -208,7 +208,9 @@ def _hops(track: Track, moving: FloatArray) -> FloatArray:
 
 
 def _circling(track: Track, case: Case) -> FloatArray:
-    """How long a fixed-wing circles at the ends of its moves (n,) [s]; wind makes circles no shorter."""
+    """How long it circles at the ends of its moves (n,) [s]; wind makes circles no shorter."""
+    if case.hovers:
+        return np.array([circling_seconds(move, case.pace) for move in track.moves])
     metres = np.array([move.circling for move in track.moves])
     airspeeds = np.array([case.cruise if move.told.air is None else move.told.air for move in track.moves])
     return np.asarray(metres / airspeeds)
@@ -224,5 +226,10 @@ def _with_energies(flown: Flown, case: Case) -> Flown:
     ends = np.array([move.end for move in track.moves])
     hovering = waiting_watts(flown.wind.filled[last], ends[:, 2], np.zeros(len(ends)), case)
     assert hovering is not None
-    waiting = hovering * flown.holds
-    return replace(flown, energies=flown.in_time(power) * flown.moving + waiting, waiting=waiting)
+    waiting = energy(hovering, flown.holds)
+    if case.hovers:
+        speeds = np.array([circling_speed(move, case.pace) if move.circling > 0 else 0.0 for move in track.moves])
+        turning = circling_watts(flown.wind.filled[last], ends[:, 2], speeds, case)
+        assert turning is not None
+        waiting += (turning - hovering) * _circling(track, case)
+    return replace(flown, energies=energy(flown.in_time(power), flown.moving) + waiting, waiting=waiting)

@@ -13,6 +13,7 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.mission import Home, Mission
 
+_FARTHEST: Final = 300_000.0  # [m] from the frame's origin, over which its distances are good to some metres
 APART: Final = 5.0  # [m] more, and home is not on this terrain's ground
 
 
@@ -35,6 +36,21 @@ def with_home(case: Case) -> Case:
             f"home's altitude is a blank 0 m: heights above home count from the ground there, {ground:.1f} m",
         )
     return case
+
+
+def check_places(case: Case) -> None:
+    """Raise `InputError` for a home or an item so far away that the case's ground and wind are another site's."""
+    home, items = case.mission.home, case.mission.items
+    places = [(f"item {n}", item.latitude_deg, item.longitude_deg) for n, item in enumerate(items, 1) if item.has_place]
+    if home is not None:
+        places.insert(0, ("home", home.point.latitude_deg, home.point.longitude_deg))
+    for name, latitude, longitude in places:
+        away = float(np.hypot(*case.frame.to_local(latitude, longitude)[0]))
+        if not away <= _FARTHEST:
+            raise InputError(
+                f"{name} lies {away / 1000:.0f} km from the middle of the terrain and wind that it is judged by"
+                f" ({case.frame.origin}): judge it by those of its own site"
+            )
 
 
 def ground_at(point: GeoPoint, case: Case) -> float:

@@ -12,6 +12,7 @@ from gcs_windplan.vehicle import air_density
 
 _UPRIGHT = 1e-6  # [m] of level way for a metre of length: straight up
 _LOWEST, _HIGHEST = -2000.0, 11_000.0  # [m] ISO 2533, as far as `air_density` goes
+_HEADINGS = 12  # on a circle
 _STUCK = 0.01  # [m/s] slower than this it stands against the wind
 
 
@@ -91,6 +92,22 @@ def waiting_watts(winds: FloatArray, altitudes: FloatArray, climb: FloatArray, c
     density = density_at(altitudes)
     air = np.hypot(winds[:, 0], winds[:, 1]) if case.hovers else np.full(len(winds), case.cruise)
     return np.asarray(case.airframe.power.watts(air, climb - winds[:, 2], density))
+
+
+def energy(power: FloatArray, seconds: FloatArray) -> FloatArray:
+    """What powers [W] take in their times [J]; nothing in no time, even at the infinite power below a stall."""
+    return np.asarray(np.where(seconds > 0, power, 0.0) * seconds)
+
+
+def circling_watts(winds: FloatArray, altitudes: FloatArray, speeds: FloatArray, case: Case) -> FloatArray | None:
+    """The mean power (n,) [W] on circles that are flown at ground speeds (n,) in winds (n, 3) [m/s]."""
+    if case.airframe is None:
+        return None
+    density, powers = density_at(altitudes), []
+    for angle in np.arange(_HEADINGS) * (2 * np.pi / _HEADINGS):
+        air = np.hypot(speeds * np.sin(angle) - winds[:, 0], speeds * np.cos(angle) - winds[:, 1])
+        powers.append(case.airframe.power.watts(np.minimum(air, case.fastest), -winds[:, 2], density))
+    return np.asarray(np.mean(powers, axis=0))
 
 
 def _held_over_ground(

@@ -14,7 +14,7 @@ from gcs_windplan.mission.duration import pace_of
 from gcs_windplan.mission.planned import mission_of
 from gcs_windplan.planner import Plan
 from gcs_windplan.request import Request
-from gcs_windplan.vehicle import Pace
+from gcs_windplan.vehicle import Pace, Vehicle
 
 _FASTEST: Final = 1000.0  # [m/s] no limit
 
@@ -41,6 +41,8 @@ def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) 
         limits=limits_of(request),
         airframe=airframe,
         gusts=request.gusts,
+        members=request.members,
+        robust=request.robust,
         airspace=request.airspace,
         obstacles=request.obstacles,
         departure=request.departure,
@@ -51,7 +53,13 @@ def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) 
 def pace_for(request: Request) -> Pace:
     """The autopilot's pace with the request's return height, and the airframe's largest airspeed where it is known."""
     fastest = _FASTEST if request.airframe is None else request.airframe.maximum_airspeed
-    return replace(pace_of(request.vehicle.autopilot), airspeed=fastest, return_height=request.return_height)
+    pace = replace(pace_of(request.vehicle.autopilot), airspeed=fastest, return_height=request.return_height)
+    return pace_with_rates(pace, request.vehicle)
+
+
+def pace_with_rates(pace: Pace, vehicle: Vehicle) -> Pace:
+    """The pace with a fixed-wing's own rates of climb and descent; a multicopter keeps its autopilot's."""
+    return pace if vehicle.hovers else replace(pace, climb=vehicle.climb, descent=vehicle.descent)
 
 
 def limits_of(request: Request) -> Limits:

@@ -12,7 +12,7 @@ from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.assessment.assessment import Stop
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.known import known_wind
-from gcs_windplan.assessment.motion import Going, motion_in, waiting_watts, watts
+from gcs_windplan.assessment.motion import Going, energy, motion_in, waiting_watts, watts
 from gcs_windplan.assessment.track import return_altitude
 from gcs_windplan.mission import Frame, RallyPoint
 from gcs_windplan.vehicle.pace import landing_seconds, ramp_seconds
@@ -92,7 +92,8 @@ def _ways(stops: Sequence[Stop], targets: FloatArray, altitudes: FloatArray, cas
     if level.watts is None:
         return WaysBack(altitudes, clearance, seconds, None)
     upright = _flown_upright(level, safe, np.where(landing > 0, -down / np.maximum(landing, 1e-9), 0.0), case)
-    energies = level.seconds * level.watts + (np.column_stack([up, 0 * up + hover, landing]) * upright).sum(axis=1)
+    parts = energy(upright, np.column_stack([up, 0 * up + hover, landing]))
+    energies = energy(level.watts, level.seconds) + parts.sum(axis=1)
     return WaysBack(altitudes, clearance, seconds, np.where(level.stopped, np.inf, energies))
 
 
@@ -125,7 +126,7 @@ def _flown_level(starts: FloatArray, ends: FloatArray, begins: FloatArray, case:
     ramp = ramp_seconds(speed, case.pace.acceleration, case.pace.jerk, case.pace.rise) if case.hovers else 0.0
     power = watts(motion, places[:, 2], case)
     weights = parts / np.maximum(parts.sum(axis=1), 1e-9)[:, None]
-    mean = None if power is None else (power.reshape(-1, _SAMPLES) * weights).sum(axis=1)
+    mean = None if power is None else energy(power.reshape(-1, _SAMPLES), weights).sum(axis=1)
     seconds = parts.sum(axis=1) + np.where(lengths > _NO_WAY, ramp, 0.0)
     return _Level(seconds, mean, stopped, winds[::_SAMPLES], winds[_SAMPLES - 1 :: _SAMPLES])
 

@@ -9,14 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from gcs_windplan.cli.surroundings import Air, terrain_by_name, told, winds_by_name
-from gcs_windplan.errors import InputError, Problem
+from gcs_windplan.errors import InputError, Problem, WindError
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Case, Limits
     from gcs_windplan.geodesy import GeoPoint, LocalFrame
     from gcs_windplan.mission import Home, Mission
-    from gcs_windplan.terrain import Extent
+    from gcs_windplan.terrain import Extent, Terrain
     from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
+    from gcs_windplan.wind import WindField
 
 _FARTHEST: Final = 300_000.0  # [m] from the first place: the local frame's distances are good to some metres over it
 _SPARE: Final = 1000.0  # [m] of ground and wind around the mission
@@ -70,7 +71,7 @@ def case_by_options(mission: Mission, name: str, file: Path, options: Options) -
     terrain = terrain_by_name(options.terrain, frame, area)
     departure = read_departure(options)
     air = Air(options.wind, options.profile, options.extend == "nearest")
-    wind, gusts = winds_by_name(air, frame, terrain, area, departure)
+    wind, gusts = _winds(air, frame, terrain, area, departure)
     if not options.wind:
         remarks += ("no --wind was given: the air is taken to be still",)
     pace = _pace(autopilot, airframe)
@@ -96,7 +97,11 @@ def case_by_options(mission: Mission, name: str, file: Path, options: Options) -
 
 
 def with_given_home(case: Case, options: Options) -> Case:
-    """The case with the home that the options name, on the ground where they name no altitude."""
+    """The case with the home that the options name, on the ground where they name no altitude.
+
+    Raises `InputError` where they limit what the case does not know.
+    """
+    _refuse_limits_unknown(case, options)
     if options.home is None:
         return case
     from gcs_windplan.assessment.home import ground_at
@@ -109,6 +114,15 @@ def with_given_home(case: Case, options: Options) -> Case:
             raise InputError(Problem(f"{point} lies outside of the terrain: write its altitude too", "--home"))
     mission = replace(case.mission, home=Home(point, altitude))
     return replace(case, mission=mission, home_is_given=True)
+
+
+def _refuse_limits_unknown(case: Case, options: Options) -> None:
+    """A limit of gusts that no forecast tells, or of a battery that no airframe has, would be kept by anything."""
+    if options.max_gust is not None and not case.gusts:
+        text = f"no gusts are told by the wind ({case.wind.name}): leave it out, or take a forecast with gusts"
+        raise InputError(Problem(text, "--max-gust"))
+    if options.min_battery is not None and case.airframe is None:
+        raise InputError(Problem("the battery is not known: leave it out, or give an airframe", "--min-battery"))
 
 
 def limits_with(own: Limits, options: Options, defaults: bool = False) -> Limits:
@@ -200,11 +214,43 @@ def _unknown_vehicle(kind: VehicleType, autopilot: Autopilot, pace: Pace) -> str
     )
 
 
+def _winds(
+    air: Air, frame: LocalFrame, terrain: Terrain, area: Extent, departure: datetime | None
+) -> tuple[WindField, tuple[WindField, ...]]:
+    """Wind and gusts by name. Raises `InputError` for a speed without a direction, and for an ensemble."""
+    for name in air.names:
+        if not Path(name).exists() and _is_speed(name):
+            raise InputError(Problem(f"{name!r} says no direction: write '{name} from 270'", "--wind"))
+    try:
+        return winds_by_name(air, frame, terrain, area, departure)
+    except WindError as error:
+        holds, ensemble, _ = str(error).partition(": say `members")
+        if not ensemble:
+            raise
+        text = f"{holds}: judge by a mission file that names it, with `wind: members: all` there (--by MISSION.yaml)"
+        raise InputError(Problem(text, "--wind")) from None
+
+
+def _is_speed(text: str) -> bool:
+    """Whether words are a speed and nothing else."""
+    from gcs_windplan.spec.units import SPEED
+    from gcs_windplan.spec.values import Measure
+
+    try:
+        Measure(SPEED, at_least=0).read(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _pace(autopilot: Autopilot, airframe: Airframe | None) -> Pace:
+    from gcs_windplan.assessment.planned import pace_with_rates
     from gcs_windplan.mission.duration import pace_of
 
     pace = pace_of(autopilot)
-    return pace if airframe is None else replace(pace, airspeed=airframe.maximum_airspeed)
+    if airframe is None:
+        return pace
+    return pace_with_rates(replace(pace, airspeed=airframe.maximum_airspeed), airframe.vehicle)
 
 
 def _cruise(mission: Mission, airframe: Airframe | None, autopilot: Autopilot) -> float:

@@ -18,7 +18,7 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.geodesy import LocalFrame
 from gcs_windplan.mission.commands import Command, Frame, command_name, plain_frame
 from gcs_windplan.mission.items import Home, Mission, MissionItem
-from gcs_windplan.mission.jumps import unrolled
+from gcs_windplan.mission.jumps import kept_items, unrolled
 from gcs_windplan.wind.field import Ground
 
 Place: TypeAlias = tuple[float, float, float]
@@ -27,6 +27,7 @@ MoveKind: TypeAlias = Literal["take-off", "leg", "landing", "return"]
 _APART = 0.01  # [m] places nearer than this are one
 _FULL_CIRCLE = 2 * math.pi
 _RADIUS = 60.0  # [m] of a fixed-wing's circles where the item names none: WP_LOITER_RAD, ArduPlane's default
+_COPTER_RADIUS = 10.0  # [m] of a multicopter's: CIRCLE_RADIUS, ArduCopter's default
 _LANDINGS = (Command.NAV_LAND, Command.NAV_VTOL_LAND)
 _TAKEOFFS = (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF)
 _PASSED = (Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT)
@@ -38,7 +39,7 @@ _ONLY_REACHED = {
     Command.NAV_LOITER_TURNS: "is flown to; its circles are not counted",
     Command.NAV_PAYLOAD_PLACE: "is flown to; its descent is not counted",
 }
-#: Items that a fixed-wing circles at, and which of their parameters is the radius.
+#: Items that a fixed-wing circles at, and which of their parameters is the radius; ArduCopter only turns.
 _CIRCLES: Final = {
     Command.NAV_LOITER_TURNS: 2,
     Command.NAV_LOITER_TIME: 2,
@@ -63,8 +64,8 @@ class Move:
     """A straight piece of a mission as flown, or a wait in place.
 
     `item` counts the mission's items from 1, home being 0. `start` and `end` are east, north in the course's frame and
-    height AMSL [m]; a return's end is home. It begins at rest where `rests`, and waits at its end for `hold` [s]; a
-    fixed-wing circles there on `radius` [m] for as long as `circling` metres take. `follows`: its height above ground
+    height AMSL [m]; a return's end is home. It begins at rest where `rests`, and waits at its end for `hold` [s]; it
+    circles there on `radius` [m] for as long as `circling` metres take. `follows`: its height above ground
     changes evenly, not that above the sea. `label` is what lies at its end: `take-off`, `waypoint`, `spline`, `loiter`,
     `wait`, `land`, `return`.
     """
@@ -86,7 +87,8 @@ class Move:
 class Course:
     """The moves of a mission in a local frame, in the order flown; `home` is where it takes off, east, north, AMSL [m].
 
-    `landings` are the items that land and the places that they name; `remarks` say what is not modelled.
+    `landings` are the items that land and the places that they name; `remarks` say what is not modelled. `endless` is
+    the item that it never comes to the end of; `aloft` where the last item leaves it in the air.
     """
 
     frame: LocalFrame
@@ -94,6 +96,8 @@ class Course:
     moves: tuple[Move, ...]
     remarks: tuple[str, ...] = ()
     landings: tuple[tuple[int, Place], ...] = ()
+    endless: int | None = None
+    aloft: bool = False
 
 
 def course_of(mission: Mission, frame: LocalFrame | None = None, ground: Ground | None = None) -> Course:
@@ -105,16 +109,22 @@ def course_of(mission: Mission, frame: LocalFrame | None = None, ground: Ground 
     if mission.home is None:
         raise InputError("the mission names no home, from which its heights and its take-off count: give it one")
     walk = _Walk(mission, mission.home, frame or LocalFrame(mission.home.point), ground)
-    for number, item in unrolled(mission.items, walk.remark):
+    for number, item in unrolled(kept_items(mission), walk.remark, walk.jump_for_ever):
+        walk.take(number, item)
         if walk.over:
             break
-        walk.take(number, item)
-    return Course(walk.frame, walk.home_place, tuple(walk.moves), tuple(walk.remarks), tuple(walk.landings))
+    aloft = not walk.landed and walk.endless is None
+    return Course(
+        walk.frame, walk.home_place, tuple(walk.moves), tuple(walk.remarks), tuple(walk.landings), walk.endless, aloft
+    )
 
 
 @dataclass(slots=True)
 class _Walk:
-    """Where the vehicle is in the mission and what it was told; `passing` says whether the last place may be passed."""
+    """Where the vehicle is in the mission and what it was told; `passing` says whether the last place may be passed.
+
+    `landed`: it stands on the ground, `down`: after a flight, so that nothing but a take-off goes on.
+    """
 
     mission: Mission
     home: Home
@@ -122,7 +132,9 @@ class _Walk:
     ground: Ground | None
     over: bool = False
     landed: bool = True
+    down: bool = False
     passing: bool = False
+    endless: int | None = None
     landings: list[tuple[int, Place]] = field(default_factory=list)
     told: Told = field(default_factory=Told)
     moves: list[Move] = field(default_factory=list)
@@ -150,7 +162,10 @@ class _Walk:
     def take(self, number: int, item: MissionItem) -> None:
         """Do what an item means."""
         command = item.command
-        if command in _TAKEOFFS:
+        if self.down and _is_flown(item) and command not in (*_TAKEOFFS, Command.NAV_DELAY):
+            self.remark(f"item {number}, {command_name(command)}, stands behind a landing and is never come to")
+            self.over = True
+        elif command in _TAKEOFFS:
             self._take_off(number, item)
         elif command in _LANDINGS:
             self._land(number, item)
@@ -163,8 +178,14 @@ class _Walk:
         elif command in _LEGS or command in _ONLY_REACHED or command == Command.NAV_LOITER_TO_ALT:
             self._go(number, item)
         elif command == Command.DO_SET_HOME or not command_name(command).startswith(("DO_", "JUMP_TAG")):
-            self.passing &= not command_name(command).startswith("NAV_")
+            self.passing &= not _is_flown(item)
             self.remark(f"item {number}, {command_name(command)}, is passed over")
+
+    def jump_for_ever(self, number: int, target: int) -> None:
+        """A jump back that is always taken; from the ground it leads on to a take-off only."""
+        begun = next((item for item in self.mission.items[target - 1 :] if _is_flown(item)), None)
+        if not self.down or (begun is not None and begun.command in _TAKEOFFS):
+            self.endless = number
 
     def _move(self, move: Move) -> None:
         self.moves.append(move)
@@ -185,7 +206,7 @@ class _Walk:
         if self.landed:
             self.remark(f"there is no take-off before item {number}; one straight up is counted")
             self._lift(number, max(end[2], self.place[2]))
-        if command in _ONLY_REACHED and not (self.winged and command == Command.NAV_LOITER_TURNS):
+        if command in _ONLY_REACHED and not (command == Command.NAV_LOITER_TURNS and self._circle(item)[1] > 0):
             self.remark(f"item {number}, {command_name(command)}, {_ONLY_REACHED[command]}")
         holds = command in (Command.NAV_WAYPOINT, Command.NAV_LOITER_TIME) and item.params[0] > 0
         if command == Command.NAV_LOITER_TO_ALT:
@@ -200,21 +221,26 @@ class _Walk:
             circle=self._circle(item),
             follows=self.ground is not None and plain_frame(item.frame) == Frame.GLOBAL_TERRAIN_ALT,
         )
-        self.over = command == Command.NAV_LOITER_UNLIM
+        if command == Command.NAV_LOITER_UNLIM:
+            self.over, self.endless = True, number
 
     def _circle(self, item: MissionItem) -> tuple[float, float]:
-        """How far a fixed-wing flies in circles at an item whose number it names [m], and their radius [m]."""
-        if not self.winged or item.command not in _CIRCLES:
+        """How far it flies in circles at an item whose number it names [m], and their radius [m].
+
+        ArduCopter stays in place but for turns (mode_auto.cpp, do_circle); PX4's multicopters have no such item.
+        """
+        turning = item.command == Command.NAV_LOITER_TURNS
+        if item.command not in _CIRCLES or not (self.winged or (turning and not self.px4)):
             return 0.0, 0.0
         named = abs(item.params[_CIRCLES[Command(item.command)]])
-        radius = named if named > 0 else _RADIUS
-        turns = item.params[0] if item.command == Command.NAV_LOITER_TURNS else 0.0
+        radius = named if named > 0 else _RADIUS if self.winged else _COPTER_RADIUS
+        turns = item.params[0] if turning else 0.0
         return max(turns, 0.0) * _FULL_CIRCLE * radius, radius
 
     def _lift(self, number: int, altitude: float) -> None:
         east, north, _ = self.place
         self._move(Move(number, "take-off", "take-off", self.place, (east, north, altitude), self.told))
-        self.landed = self.passing = False
+        self.landed = self.down = self.passing = False
 
     def _take_off(self, number: int, item: MissionItem) -> None:
         """Straight up; PX4 then flies to the place that the item names, ArduCopter does not."""
@@ -244,14 +270,19 @@ class _Walk:
             under = self._under(end)
             below = below if math.isnan(under) else min(under, height)
         self._move(Move(number, "landing", "land", self.place, (*self.place[:2], below), self.told))
-        self.landed, self.passing = True, False
+        self.passing = False
+        self._touch_down()
 
     def _return(self, number: int) -> None:
-        """Home and down; speeds commanded before do not count, and the mission ends."""
-        self.over = True
+        """Home and down; speeds commanded before do not count on the way."""
         if not self.landed:
             self._move(Move(number, "return", "return", self.place, self.home_place))
-            self.landed = True
+        self._touch_down()
+
+    def _touch_down(self) -> None:
+        """On the ground a mission ends; ArduCopter's goes on with a take-off, as `mission.lint` has it."""
+        self.landed = self.down = True
+        self.over = self.px4 or self.winged
 
     def _delay(self, number: int, item: MissionItem) -> None:
         if item.params[0] > 0:
@@ -300,3 +331,8 @@ class _Walk:
     def _plan(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
         east, north = self.frame.to_local(latitude_deg, longitude_deg)[0]
         return float(east), float(north)
+
+
+def _is_flown(item: MissionItem) -> bool:
+    """Whether the vehicle flies an item rather than doing something on its way."""
+    return command_name(item.command).startswith("NAV_")

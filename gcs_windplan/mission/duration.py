@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -33,14 +33,17 @@ from gcs_windplan.vehicle import (
 #: AMSL [m]. For a wind field in home's frame: `lambda starts, ends: field.at((starts + ends) / 2)`.
 WindAlong: TypeAlias = Callable[[FloatArray, FloatArray], FloatArray]
 
+_CIRCLE_RATE: Final = math.radians(20.0)  # [rad/s] CIRCLE_RATE, ArduCopter's default
+_INWARDS: Final = 0.5  # of the acceleration that a circle may take: AC_Circle.cpp, calc_velocities
+
 
 @dataclass(frozen=True, slots=True)
 class FlownLeg:
     """A leg as flown, or a wait in place.
 
     `item` counts the mission's items from 1, home being 0. `start` and `end` are east, north of home and height AMSL
-    [m]. `seconds` contain `hold` [s] at its end and are infinite where the wind is too strong. `commanded` is the level
-    ground speed, `peak` the speed along the slope that it comes to [m/s].
+    [m]. `seconds` contain `hold` [s] at its end, circles there included, and are infinite where the wind is too strong.
+    `commanded` is the level ground speed, `peak` the speed along the slope that it comes to [m/s].
     """
 
     item: int
@@ -131,13 +134,27 @@ def time_course(course: Course, winds: FloatArray, pace: Pace) -> CourseTimes:
     return CourseTimes(seconds, peaks, losses)
 
 
+def circling_speed(move: Move, pace: Pace) -> float:
+    """The speed [m/s] of a multicopter on its circles: AC_Circle.cpp, calc_velocities, with the default CIRCLE_RATE.
+
+    As commanded, but at most CIRCLE_RATE round the middle, and with half of the acceleration towards it.
+    """
+    told = pace.speed if move.told.ground is None else move.told.ground
+    return min(told, _CIRCLE_RATE * move.radius, math.sqrt(_INWARDS * pace.acceleration * move.radius))
+
+
+def circling_seconds(move: Move, pace: Pace) -> float:
+    """How long a multicopter flies in circles at the end of a move [s]."""
+    return move.circling / circling_speed(move, pace) if move.circling > 0 else 0.0
+
+
 def _legs_flown(moves: Sequence[Move], winds: FloatArray, pace: Pace) -> CourseTimes:
     """Legs one after the other, from rest to rest."""
     told = [move.told for move in moves]
     times = as_flown(
         np.array([moves[0].start, *(move.end for move in moves)]),
         np.array([pace.speed if one.ground is None else one.ground for one in told]),
-        np.array([0.0, *(move.hold for move in moves)]),
+        np.array([0.0, *(move.hold + circling_seconds(move, pace) for move in moves)]),
         winds,
         pace,
         climbs=np.array([pace.climb if one.climb is None else one.climb for one in told]),
@@ -170,4 +187,5 @@ def _legs(course: Course, times: CourseTimes, pace: Pace) -> Iterator[FlownLeg]:
     for move, seconds, peak in zip(course.moves, times.seconds, times.peaks, strict=True):
         if move.kind == "leg":
             commanded = pace.speed if move.told.ground is None else move.told.ground
-            yield FlownLeg(move.item, move.start, move.end, commanded, float(peak), move.hold, float(seconds))
+            hold = move.hold + circling_seconds(move, pace)
+            yield FlownLeg(move.item, move.start, move.end, commanded, float(peak), hold, float(seconds))

@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs_windplan.assessment import Limits, assess
-from gcs_windplan.errors import WindError
+from gcs_windplan.assessment import Limits, Source, assess
+from gcs_windplan.errors import InputError, WindError
+from gcs_windplan.geodesy import GeoPoint
 from gcs_windplan.mission import Command, Fence, FenceCircle, FencePolygon, Home, RallyPoint
 from gcs_windplan.terrain import Dem, Obstacle, Obstacles
-from gcs_windplan.vehicle import air_density
+from gcs_windplan.vehicle import Airframe, Battery, FixedWing, Vehicle, air_density
 from gcs_windplan.veil import Airspace, Prism
 from gcs_windplan.wind import ConstantWind
 from gcs_windplan.wind.field import Steady
@@ -127,14 +128,17 @@ def test_a_fixed_wing_may_come_down_to_land():
     assert [finding.rule for finding in review.findings] == []
 
 
-def test_a_fixed_wings_circles():
+def test_circles():
     """80 m above home, 150 m beside a ridge of 60 m: its circles of 150 m lead over the top."""
     turns = at(850, 0, 80, 3, 0, 150, command=Command.NAV_LOITER_TURNS)
     review = judged(turns, terrain=ridge(), mission={"vehicle_type": "fixed-wing"}, limits=Limits(clearance=30))
     (finding,) = found(review, "circle")
     assert finding.value == pytest.approx(20, abs=0.1)
     assert "circles of 150 m" in finding.message
-    assert found(judged(turns, terrain=ridge(), limits=Limits(clearance=30)), "circle") == []
+    (turning,) = found(judged(turns, terrain=ridge(), limits=Limits(clearance=30)), "circle")
+    assert turning.value == pytest.approx(20, abs=0.1)
+    waits = at(850, 0, 80, 3, 0, 150, command=Command.NAV_LOITER_TIME)
+    assert found(judged(waits, terrain=ridge(), limits=Limits(clearance=30)), "circle") == []
 
 
 def test_obstacles():
@@ -253,8 +257,58 @@ def test_wind_and_gusts_beyond_their_limits():
     wind, gust = found(review, "wind")[0], found(review, "gust")[0]
     assert (wind.value, gust.value) == pytest.approx((10, 14))
     assert (review.sums.wind, review.sums.gust) == pytest.approx((10, 14))
-    kept = judged(at(0, 900), wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=Limits(wind=10, gust=14))
+    still = Limits(wind=10, gust=14)
+    kept = judged(at(0, 900), RETURN, wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=still)
     assert kept.verdict == "clear"
+
+
+def test_legs_in_a_row_make_one_finding_where_it_is_worst():
+    """Wind from the south of 1 m/s and another for each 100 m to the north: legs 2 to 4 lead beyond 900 m."""
+    review = judged(at(0, 600), at(0, 1200), at(0, 1500), at(0, 600), at(0, 0), RETURN, wind=Rising(),
+                    limits=Limits(wind=10))  # fmt: skip
+    (finding,) = found(review, "wind")
+    assert finding.leg in (3, 4)
+    assert finding.value == pytest.approx(review.sums.wind)
+    assert finding.value == pytest.approx(16, abs=0.5)
+    assert finding.message.startswith(f"legs 2 to 4 meet, at worst on leg {finding.leg} (to item {finding.leg + 1}),")
+
+
+def test_members_are_looked_at_one_by_one():
+    """A mean of 5 m/s from four members: one blows at 14 m/s, two of them faster than 10, none stops it but at 25."""
+    calm = ConstantWind(2.5, 0)
+
+    def windy(*members, robust=0.75):
+        fields = tuple(ConstantWind(-speed, 0) for speed in members)
+        return judged(at(500, 0), at(900, 0), RETURN, wind=calm, members=fields, robust=robust,
+                      limits=Limits(wind=10))  # fmt: skip
+
+    one, two = windy(2, 2, 2, 14), windy(2, 2, 12, 14)
+    for review, severity, count in ((one, "warning", 1), (two, "danger", 2)):
+        (finding,) = found(review, "wind")
+        assert (finding.severity, finding.value) == (severity, pytest.approx(14))
+        assert f"in the strongest of 4 members, {count} of which" in finding.message
+        assert review.sums.wind == pytest.approx(14)
+        assert found(review, "flyable") == []
+        assert "mean wind of 4 members" in " ".join(review.remarks)
+    for members, severity in (((2, 2, 2, 25), "warning"), ((2, 2, 25, 25), "danger")):
+        (stopped,) = found(windy(*members), "flyable")
+        assert stopped.severity == severity
+        assert f"in {members.count(25)} of 4 members" in stopped.message
+    (strict,) = found(windy(2, 2, 2, 25, robust=0.9), "flyable")
+    assert strict.severity == "danger"
+    ten = windy(*[2] * 9, 25, robust=0.9)
+    assert found(ten, "flyable")[0].severity == "warning", "one of ten is what nine of ten leave over"
+
+
+@dataclass(frozen=True)
+class Rising(Steady):
+    """Wind from the south that grows northwards."""
+
+    name: str = "rising"
+    resolution: float = 100.0
+
+    def at(self, points, seconds=0.0):
+        return np.column_stack([0 * points[:, 1], 1 + points[:, 1] / 100, 0 * points[:, 1]])
 
 
 @dataclass(frozen=True)
@@ -328,6 +382,47 @@ def test_a_landing_at_another_height_than_the_ground():
     assert found(level, "landing") == []
 
 
+def test_a_mission_without_an_end():
+    back, unlimited = free(Command.DO_JUMP, 2, -1), at(0, 500, command=Command.NAV_LOITER_UNLIM)
+    for last, words in ((back, "item 4, DO_JUMP for ever"), (unlimited, "item 4, NAV_LOITER_UNLIM")):
+        for kind in ("multicopter", "fixed-wing"):
+            review = judged(at(0, 300), at(0, 500), last, mission={"vehicle_type": kind})
+            (finding,) = found(review, "endless")
+            assert (finding.severity, finding.item, review.verdict) == ("danger", 4, "dangers")
+            assert words in finding.message
+            assert "until the battery is empty" in finding.message
+            assert found(review, "ending") == []
+
+
+def test_a_mission_that_ends_in_the_air():
+    (finding,) = found(judged(at(0, 300), at(0, 500)), "ending")
+    assert (finding.severity, finding.item, finding.leg) == ("warning", 3, 2)
+    assert "it hovers there until the battery is empty" in finding.message
+    assert "add a LAND or RTL" in finding.message
+    winged = {"vehicle_type": "fixed-wing"}
+    assert "circles over home" in found(judged(at(0, 300), mission=winged), "ending")[0].message
+    px4 = {**winged, "autopilot": "px4"}
+    assert "it circles there" in found(judged(at(0, 300), mission=px4), "ending")[0].message
+    for end in (RETURN, at(0, 500, 0, command=Command.NAV_LAND)):
+        assert found(judged(at(0, 300), end), "ending") == []
+
+
+def test_what_stands_behind_a_landing_is_not_judged():
+    land = at(0, 500, 0, command=Command.NAV_LAND)
+    far = judged(at(0, 300), land, at(0, 3000), RETURN)
+    assert [leg.item for leg in far.legs] == [2, 3]
+    assert found(far, "firmware-unreachable")
+
+
+def test_a_mission_of_another_site():
+    there = Home(GeoPoint(36.5, -84.3), 300.0)
+    source = Source("mission", "far.plan", "far.plan")
+    with pytest.raises(InputError, match=r"far\.plan: home lies \d+ km from the middle .* of its own site"):
+        assess(case(at(0, 500), mission={"home": there}, sources=(source,)))
+    with pytest.raises(InputError, match=r"far\.plan: item 3 jumps 30000 times"):
+        assess(case(at(0, 500), free(Command.DO_JUMP, 2, 30_000), sources=(source,)))
+
+
 # The battery, and the way back
 
 
@@ -342,6 +437,53 @@ def test_the_reserve_and_the_limit():
     assert review.stops[limit.leg].left < 0.5 <= review.stops[limit.leg - 1].left
     large = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=airframe(capacity=2_500_000))
     assert found(large, "reserve") == []
+
+
+def test_circles_take_from_the_battery():
+    """The test's airframe draws the same at any airspeed; ten circles of 50 m take 397 s at 7.9 m/s."""
+    turns = at(0, 500, 80, 10, 0, 50, command=Command.NAV_LOITER_TURNS)
+    frame = airframe(capacity=1_000_000)
+    turned, passed = (judged(item, RETURN, airframe=frame) for item in (turns, replace(turns, params=(0.0,) * 4)))
+    seconds = 10 * 2 * math.pi * 50 / math.sqrt(0.5 * 2.5 * 50)
+    assert turned.sums.seconds - passed.sums.seconds == pytest.approx(seconds, abs=0.01)
+    watts = float(frame.power.watts(7.9, 0.0, air_density(GROUND + 80)))
+    assert turned.sums.energy - passed.sums.energy == pytest.approx(watts * seconds, rel=1e-6)
+    assert turned.stops[1].hold == pytest.approx(seconds)
+
+
+def test_a_hold_that_the_firmware_keeps_as_another():
+    """ArduPilot makes 65531 s of -5 s, and no battery lasts that long."""
+    review = judged(at(0, 500, 80, -5, command=Command.NAV_LOITER_TIME), RETURN, airframe=airframe())
+    assert review.stops[1].hold == 65531
+    assert found(review, "reserve")[0].severity == "danger"
+
+
+def test_a_wing_near_its_stall():
+    """12 m/s at sea level; at 600 m above it, where it returns, the air is thinner and the stall faster."""
+    power = FixedWing(2.0, 0.5, 10.0, 0.9, 0.03, 0.6, stall_airspeed=12.0)
+    vehicle = Vehicle(18.0, 3.0, 2.0, type="fixed-wing")
+    frame = Airframe("wing", vehicle, 2.0, Battery(2e6), power, 25.0)
+    stall = 12 * math.sqrt(air_density(0.0) / air_density(GROUND + 100))
+
+    def flown(*items, cruise=18.0):
+        return judged(*items, RETURN, mission={"vehicle_type": "fixed-wing"}, airframe=frame, cruise=cruise)
+
+    assert found(flown(at(0, 900), cruise=1.21 * stall), "stall") == []
+    (near,) = found(flown(at(0, 900), cruise=1.19 * stall), "stall")
+    assert (near.severity, near.limit) == ("warning", pytest.approx(1.2 * stall))
+    slow = free(Command.DO_CHANGE_SPEED, 0, 1.1 * stall)
+    (told,) = found(flown(at(0, 600), slow, at(0, 900), at(0, 600)), "stall")
+    assert told.leg >= 2
+    assert "legs 2 to 3" in told.message
+    below = flown(at(0, 900), cruise=0.95 * stall)
+    assert found(below, "stall")[0].severity == "danger"
+    assert found(below, "reserve") == []
+
+
+def test_rates_that_are_the_autopilots():
+    rates = judged(at(0, 900), RETURN, airframe=airframe(climb=4.0, descent=3.0)).remarks
+    assert any("the autopilot's defaults, 2.5 and 1.5 m/s" in one and "4 and 3 m/s" in one for one in rates)
+    assert not any("defaults" in one for one in judged(at(0, 900), RETURN, airframe=airframe()).remarks)
 
 
 def test_a_reserve_in_time():
@@ -392,7 +534,7 @@ def test_findings_are_told_dangers_first_and_once_a_leg():
 
 
 def test_findings_from_elsewhere_are_added():
-    flown = case(at(0, 300))
+    flown = case(at(0, 300), RETURN)
     (far,) = found(judged(at(0, 900), limits=Limits(first_leg=500)), "first-leg")
     assert assess(flown, [far]).findings == (far,)
     assert assess(replace(flown, pace=SWIFT)).verdict == "clear"

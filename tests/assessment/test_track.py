@@ -197,7 +197,7 @@ def test_a_mission_of_a_takeoff_alone():
     review = judged()
     assert (len(review.stops), len(review.legs)) == (1, 0)
     assert math.isnan(review.sums.clearance)
-    assert review.verdict == "clear"
+    assert [finding.rule for finding in review.findings] == ["ending"]
 
 
 def test_a_place_of_zeros_means_here():

@@ -220,7 +220,7 @@ def test_a_battery_that_is_overdrawn_is_a_finding_not_an_error(tmp_path: Path, g
 
 
 def test_a_mission_with_a_far_waypoint_says_which(tmp_path: Path):
-    write_plan(Mission((*ITEMS[:3], at(290_000, 0), at(-290_000, 0)), HOME), tmp_path / "far.plan")
+    write_plan(Mission((*ITEMS[:3], at(290_000, 0), at(-290_000, 0), RETURN), HOME), tmp_path / "far.plan")
     done = review(tmp_path / "far.plan", "--terrain", "flat:500")
     assert done.exception is None or "item" in str(done.exception)
 

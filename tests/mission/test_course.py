@@ -87,3 +87,44 @@ def test_another_frame_moves_the_places_and_nothing_else():
 def test_a_mission_without_home_has_no_course():
     with pytest.raises(InputError, match="names no home"):
         course_of(Mission((takeoff(),)))
+
+
+def test_what_never_ends_and_what_ends_in_the_air():
+    there, land = at(0, 99), at(0, 99, command=Command.NAV_LAND)
+    back, unlimited = free(Command.DO_JUMP, 2, -1), at(0, 200, command=Command.NAV_LOITER_UNLIM)
+    for items, endless, aloft in (
+        ((there, back), 3, False),
+        ((there, unlimited, HOME_AGAIN), 3, False),
+        ((there, HOME_AGAIN), None, False),
+        ((there, land), None, False),
+        ((there,), None, True),
+        ((there, land, takeoff(), there), None, True),
+        ((there, land, back), None, False),
+        ((there, land, free(Command.DO_JUMP, 1, -1)), 4, False),
+    ):
+        course = course_of(mission(*items))
+        assert (course.endless, course.aloft) == (endless, aloft), items
+
+
+@pytest.mark.parametrize("end", [at(0, 99, command=Command.NAV_LAND), HOME_AGAIN])
+def test_nothing_but_a_takeoff_goes_on_behind_a_landing(end):
+    behind = course_of(mission(end, at(0, 200), at(0, 300)))
+    assert {move.item for move in behind.moves} <= {1, 2}
+    assert "item 3, NAV_WAYPOINT, stands behind a landing" in behind.remarks[-1]
+    again = course_of(mission(end, speed(5), free(Command.NAV_DELAY, 9), takeoff(), at(0, 300)))
+    assert [move.item for move in again.moves][-3:] == [4, 5, 6]
+    for other in ({"autopilot": "px4"}, {"vehicle_type": "fixed-wing"}):
+        over = course_of(mission(end, takeoff(), at(0, 300), **other))
+        assert {move.item for move in over.moves} <= {1, 2}, other
+
+
+def test_jumps_through_too_many_items_are_named():
+    with pytest.raises(InputError, match="item 4 jumps 30000 times"):
+        course_of(mission(at(0, 99), at(0, 200), free(Command.DO_JUMP, 2, 30_000)))
+
+
+def test_a_planes_loiter_in_time_keeps_the_sign_of_its_radius_only():
+    loiter = at(0, 500, 80, 30, 0, 200, command=Command.NAV_LOITER_TIME)
+    assert course_of(mission(loiter, vehicle_type="fixed-wing")).moves[-1].radius == 60
+    hold = at(0, 500, 80, 30)
+    assert course_of(mission(hold, vehicle_type="fixed-wing")).moves[-1].hold == 0, "ArduPlane keeps none"

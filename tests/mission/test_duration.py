@@ -111,12 +111,12 @@ def test_climb_and_descent_are_commanded_apart():
 @pytest.mark.parametrize(
     "stop",
     [
-        at(0, 500, 80, 1e-9),
-        at(0, 500, 80, 1e-9, command=Command.NAV_LOITER_TIME),
+        at(0, 500, 80, 1),
+        at(0, 500, 80, 1, command=Command.NAV_LOITER_TIME),
     ],
 )
 def test_a_hold_is_a_full_stop(stop):
-    assert sum(leg_seconds(stop, at(0, 1000))) - sum(leg_seconds(at(0, 500), at(0, 1000))) == pytest.approx(7.42)
+    assert sum(leg_seconds(stop, at(0, 1000))) - sum(leg_seconds(at(0, 500), at(0, 1000))) == pytest.approx(8.42)
 
 
 def test_a_delay_waits_where_it_is():
@@ -202,7 +202,6 @@ def test_what_is_not_modelled_is_named():
     flown = duration_of(mission(*items))
     assert flown.remarks == (
         "item 3, CONDITION_DELAY, is passed over",
-        "item 4, NAV_LOITER_TURNS, is flown to; its circles are not counted",
         "item 6, command 31337, is passed over",
         "item 7, NAV_DELAY until a time of day, is counted as a stop",
         "item 8 counts from the terrain; its height is taken from home",
@@ -303,13 +302,49 @@ def test_a_slower_commanded_speed_never_makes_a_mission_shorter(route, commanded
     assert slow >= fast - a_hundredth
 
 
-@given(places, st.floats(0, 60))
+@given(places, st.integers(0, 60))
 def test_a_hold_costs_at_least_its_seconds(route, hold):
     still, held = (
         duration_of(mission(*(at(*place) for place in route[:-1]), at(*route[-1], seconds), at(0, 0))).total
         for seconds in (0.0, hold)
     )
     assert held >= still + hold - a_hundredth
+
+
+@pytest.mark.parametrize(
+    ("turns", "radius", "speed_told", "flown"),
+    [
+        (2, 10, 10, math.radians(20) * 10),  # CIRCLE_RATE
+        (2, 50, 10, math.sqrt(0.5 * 2.5 * 50)),  # half of WPNAV_ACCEL
+        (3, 200, 6, 6),  # as commanded
+        (1, 0, 10, math.radians(20) * 10),  # CIRCLE_RADIUS
+        (2.7, -50, 10, math.sqrt(0.5 * 2.5 * 50) * 2.7 / 2),  # whole turns are kept, and the way round is the sign
+    ],
+)
+def test_arducopter_flies_its_circles(turns, radius, speed_told, flown):
+    """AC_Circle.cpp, calc_velocities: at most CIRCLE_RATE, and half of the acceleration towards the middle."""
+    circles = at(0, 500, 80, turns, 0, radius, command=Command.NAV_LOITER_TURNS)
+    held, still = (
+        duration_of(mission(speed(speed_told), item, at(0, 900))).en_route
+        for item in (circles, at(0, 500, 80, 0, command=Command.NAV_LOITER_TURNS))
+    )
+    way = turns * 2 * math.pi * abs(radius or 10)
+    assert held - still == pytest.approx(way / flown, abs=a_hundredth)
+
+
+def test_holds_count_as_the_firmware_keeps_them():
+    """ArduPilot keeps whole seconds from 0 to 65535, PX4 floats: -5 s is no wait."""
+
+    def waits(autopilot, seconds, command):
+        hold = at(0, 500, 80, seconds, command=command)
+        return [leg.hold for leg in duration_of(Mission((takeoff(), hold), HOME, autopilot)).legs]
+
+    loiter, waypoint = Command.NAV_LOITER_TIME, Command.NAV_WAYPOINT
+    assert waits("ardupilot", -5, loiter) == [65531]
+    assert waits("ardupilot", 1e12, waypoint) == [4096]
+    assert waits("ardupilot", 2.5, waypoint) == [2]
+    assert waits("px4", -5, loiter) == [0]
+    assert waits("px4", 2.5, waypoint) == [2.5]
 
 
 # As measured

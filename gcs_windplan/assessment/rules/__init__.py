@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.rules.areas import areas
 from gcs_windplan.assessment.rules.battery import battery
-from gcs_windplan.assessment.rules.ends import first_leg, home, landing
+from gcs_windplan.assessment.rules.ends import ending, first_leg, home, landing
 from gcs_windplan.assessment.rules.firmware import firmware
 from gcs_windplan.assessment.rules.ground import circles, clearance, ground, height, obstacles
 from gcs_windplan.assessment.rules.returns import returns
 from gcs_windplan.assessment.rules.saying import Found
-from gcs_windplan.assessment.rules.speeds import airspeed, flyable, gradient
+from gcs_windplan.assessment.rules.speeds import airspeed, flyable, flyable_in_members, gradient, stall
 from gcs_windplan.assessment.rules.wind import forecast, gust, wind
 
 RULES: tuple[Callable[[Judged], Iterator[Found]], ...] = (
@@ -28,9 +28,12 @@ RULES: tuple[Callable[[Judged], Iterator[Found]], ...] = (
     wind,
     gust,
     flyable,
+    flyable_in_members,
     airspeed,
+    stall,
     gradient,
     landing,
+    ending,
     battery,
     returns,
     firmware,

@@ -30,6 +30,8 @@ def battery(mission: Judged) -> Iterator[Found]:
     if used is None or airframe is None:
         return
     left, capacity = float(1 - used[-1]), airframe.battery.capacity
+    if not np.isfinite(left):
+        return  # below the stall, which a rule of its own tells
     for rule, least, name in reserves(mission.case, mission.stops):
         if left >= least - _SLACK:
             continue

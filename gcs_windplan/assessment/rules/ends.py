@@ -1,9 +1,10 @@
-"""Rules of the ends: home on the ground, the first place near home, the landing at the ground's height."""
+"""Rules of the ends: home on the ground, the first place near home, an end at all, and at the ground's height."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,8 @@ import numpy as np
 from gcs_windplan.assessment.assessment import Finding, Severity
 from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.home import APART, first_place
-from gcs_windplan.assessment.rules.saying import Found, metres
+from gcs_windplan.assessment.rules.saying import Found, at_stop, metres
+from gcs_windplan.mission import Command, command_name
 
 _LANDING_APART: Final = 5.0  # [m] the autopilot feels for the ground, but from another height
 
@@ -77,3 +79,38 @@ def landing(mission: Judged) -> Iterator[Found]:
             unit="m",
         )  # fmt: skip
         yield finding, np.array(place)
+
+
+def ending(mission: Judged) -> Iterator[Found]:
+    """A mission that never ends, or ends in the air."""
+    course, stop = mission.track.course, mission.stops[-1].number
+    if course.endless is not None:
+        finding, place = at_stop(mission, stop, "endless", "danger", _endless(mission, course.endless))
+        yield replace(finding, item=course.endless), place
+    elif course.aloft:
+        yield at_stop(mission, stop, "ending", "warning", f"{_aloft(mission)}: add a LAND or RTL")
+
+
+def _endless(mission: Judged, number: int) -> str:
+    """What is said of an item that has no end."""
+    command = mission.case.mission.items[number - 1].command
+    loiters = command == Command.NAV_LOITER_UNLIM
+    does = "" if loiters else " for ever"
+    do = "use NAV_LOITER_TIME, and land or return behind it" if loiters else "give it a count, and an end behind it"
+    return (
+        f"item {number}, {command_name(command)}{does}, has no end: it flies until the battery is empty, and time and"
+        f" battery are counted up to there only; {do}"
+    )
+
+
+def _aloft(mission: Judged) -> str:
+    """What a vehicle does whose mission ends in the air."""
+    if mission.case.hovers:
+        does = "hovers there"
+    elif mission.case.autopilot == "ardupilot":  # Plane::exit_mission_callback changes to RTL
+        does = "circles over home"
+    else:
+        does = "circles there"
+    last = len(mission.case.mission.items)
+    said = f"the mission ends in the air, with item {last}: it {does} until the battery is empty"
+    return f"{said}; landing or return is not counted"

@@ -58,7 +58,7 @@ def clearance(mission: Judged) -> Iterator[Found]:
 
 
 def circles(mission: Judged) -> Iterator[Found]:
-    """Circles of a fixed-wing at its loiters, too near to the ground."""
+    """Circles at loiters, too near to the ground."""
     limit, terrain = mission.case.limits.clearance or 0.0, mission.case.terrain
     for leg, move in _legs(mission):
         radius = mission.track.moves[move].radius

@@ -9,10 +9,17 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment.assessment import JudgedLeg
 from gcs_windplan.assessment.figures import Judged
-from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg
+from gcs_windplan.assessment.flown import going_of
+from gcs_windplan.assessment.known import known_wind
+from gcs_windplan.assessment.motion import density_at, motion_in
+from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg, runs
+from gcs_windplan.assessment.rules.wind import severity_in
+from gcs_windplan.vehicle import SEA_LEVEL_DENSITY, FixedWing
 
 _SLACK = 0.02  # [m/s] what rounding of commanded speeds may have added
 _WORTH_SAYING = 0.05  # of the largest airspeed, by which a commanded speed misses it: 5 % of a leg's time at most
+_OVER_STALL = 1.2  # the usual margin, that of V2 in CS-23
+_ROUNDING = 1e-6
 _PASSED = 2.0  # [m] a shorter leg ends within the waypoint's radius (ArduCopter's default of WPNAV_RADIUS)
 
 
@@ -32,6 +39,55 @@ def flyable(mission: Judged) -> Iterator[Found]:
             f"{leg_name(leg)} cannot be flown: in wind of {blowing[worst]:.1f} m/s the vehicle makes no way at"
             f" {case.fastest:g} m/s through the air: another departure, or a faster vehicle",
             at=flown.samples.places[part][worst], value=float(blowing[worst]), limit=case.fastest, unit="m/s",
+        )  # fmt: skip
+
+
+def flyable_in_members(mission: Judged) -> Iterator[Found]:
+    """Legs on which the wind stops the vehicle in members of an ensemble, though not in their mean."""
+    stopped, members = _stopped_in_members(mission), len(mission.case.members)
+    for first, last in runs([bool(count) for count in stopped]):
+        worst = first + int(np.argmax(stopped[first : last + 1]))
+        leg, count = mission.legs[worst], int(stopped[worst])
+        more = "" if first == last else f"; legs {first + 1} to {last + 1} in as many at most"
+        yield on_leg(
+            mission, leg, "flyable", severity_in(count, members, mission.case.robust),
+            f"{leg_name(leg)} cannot be flown in {count} of {members} members, in which the wind is too strong for"
+            f" {mission.case.fastest:g} m/s through the air{more}: another departure, or a faster vehicle",
+            value=float(count), limit=(1 - mission.case.robust) * members, unit="members",
+        )  # fmt: skip
+
+
+def _stopped_in_members(mission: Judged) -> FloatArray:
+    """In how many members each leg cannot be flown (legs,); 0 for one that the mean wind stops already."""
+    flown, case, samples = mission.flown, mission.case, mission.flown.samples
+    going = going_of(flown.track, samples.move, samples.direction, flown.peaks, case)
+    counts = np.zeros(len(mission.track.moves))
+    for field in case.members:
+        winds = known_wind(field, samples.places, flown.passed).filled
+        counts += samples.sums(motion_in(winds, going, case).stopped.astype(np.float64)) > 0
+    return np.asarray(np.where(flown.stopped > 0, 0.0, counts)[mission.track.leg_moves])
+
+
+def stall(mission: Judged) -> Iterator[Found]:
+    """Legs of a fixed-wing near its stall, or below; one finding for all in a row, where it is nearest."""
+    case, flown = mission.case, mission.flown
+    power = None if case.airframe is None else case.airframe.power
+    if case.hovers or not isinstance(power, FixedWing) or power.stall_airspeed <= 0:
+        return
+    samples = flown.samples
+    stalls = power.stall_airspeed * np.sqrt(SEA_LEVEL_DENSITY / density_at(samples.places[:, 2]))
+    shares, first_of = flown.motion.air / stalls, samples.first
+    nearest = [int(first_of[m] + np.argmin(shares[first_of[m] : first_of[m + 1]])) for m in mission.track.leg_moves]
+    for first, last in runs([bool(shares[i] < _OVER_STALL - _ROUNDING) for i in nearest]):
+        worst = first + int(np.argmin(shares[nearest[first : last + 1]]))
+        leg, at = mission.legs[worst], nearest[worst]
+        air, least = float(flown.motion.air[at]), float(stalls[at])
+        flies = "flies" if first == last else f", of legs {first + 1} to {last + 1} the nearest to the stall, flies"
+        yield on_leg(
+            mission, leg, "stall", "danger" if air < least else "warning",
+            f"{leg_name(leg)}{' ' if first == last else ''}{flies} at {air:.1f} m/s through the air, and at that height"
+            f" the wing stalls at {least:.1f} m/s: command {_OVER_STALL:g} times that, {_OVER_STALL * least:.1f} m/s",
+            at=samples.places[at], value=air, limit=_OVER_STALL * least, unit="m/s",
         )  # fmt: skip
 
 

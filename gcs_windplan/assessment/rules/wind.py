@@ -7,11 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
+from gcs_windplan.assessment.assessment import Severity
 from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.known import known_wind
-from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg
+from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg, runs
 
 _SLACK = 1e-3  # [m/s]
+_ROUNDING = 1e-9  # of a number of members
 
 
 def forecast(mission: Judged) -> Iterator[Found]:
@@ -31,19 +33,29 @@ def forecast(mission: Judged) -> Iterator[Found]:
 def wind(mission: Judged) -> Iterator[Found]:
     """Legs in stronger wind than allowed."""
     limit = mission.case.limits.wind
-    if limit is None:
-        return
-    blowing = np.hypot(*mission.flown.wind.winds[:, :2].T)
-    yield from _stronger(mission, blowing, limit, "wind")
+    if limit is not None:
+        yield from _stronger(mission, winds_of(mission), limit, "wind")
 
 
 def gust(mission: Judged) -> Iterator[Found]:
-    """Legs in stronger gusts than allowed."""
+    """Legs in stronger gusts than allowed, in whatever member."""
     limit = mission.case.limits.gust
     gusts = gusts_of(mission)
     if limit is None or gusts is None:
         return
-    yield from _stronger(mission, gusts, limit, "gust")
+    yield from _stronger(mission, gusts[None], limit, "gust")
+
+
+def winds_of(mission: Judged) -> FloatArray:
+    """The wind at each sample (m, k) [m/s] in each member of an ensemble, or the one wind."""
+    flown = mission.flown
+    members = [known_wind(field, flown.samples.places, flown.passed).winds for field in mission.case.members]
+    return np.array([np.hypot(one[:, 0], one[:, 1]) for one in members or [flown.wind.winds]])
+
+
+def strongest_wind(mission: Judged) -> float:
+    """The strongest wind met in any member [m/s], 0 where none is known."""
+    return float(np.nanmax(winds_of(mission), initial=0.0))
 
 
 def gusts_of(mission: Judged) -> FloatArray | None:
@@ -62,19 +74,39 @@ def strongest_gust(mission: Judged) -> float | None:
 
 
 def _stronger(mission: Judged, speeds: FloatArray, limit: float, what: str) -> Iterator[Found]:
-    """The legs on which speeds at the samples (k,) exceed a limit [m/s]."""
-    samples = mission.flown.samples
-    for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
-        part = slice(int(samples.first[move]), int(samples.first[move + 1]))
-        here = np.nan_to_num(speeds[part])
-        worst = int(np.argmax(here))
-        if here[worst] > limit + _SLACK:
-            yield on_leg(
-                mission, leg, what, "danger",
-                f"{leg_name(leg)} meets {'gusts' if what == 'gust' else 'wind'} of {here[worst]:.1f} m/s, more than the"
-                f" limit of {limit:g} m/s: another departure or a lower or more sheltered way",
-                at=samples.places[part][worst], value=float(here[worst]), limit=limit, unit="m/s",
-            )  # fmt: skip
+    """The legs on which speeds at the samples in members (m, k) exceed a limit [m/s]; one finding for all in a row."""
+    samples, moves = mission.flown.samples, mission.track.leg_moves
+    parts = [np.nan_to_num(speeds[:, samples.first[move] : samples.first[move + 1]]) for move in moves]
+    peaks = np.array([part.max(axis=1) for part in parts]).reshape(len(moves), len(speeds))
+    broken = (peaks > limit + _SLACK).sum(axis=1)
+    for first, last in runs([bool(count) for count in broken]):
+        worst = first + int(np.argmax(peaks[first : last + 1].max(axis=1)))
+        leg, most = mission.legs[worst], float(peaks[worst].max())
+        count, members = int(broken[first : last + 1].max()), len(speeds)
+        at = int(samples.first[moves[worst]]) + int(np.argmax(parts[worst].max(axis=0)))
+        yield on_leg(
+            mission, leg, what, severity_in(count, members, mission.case.robust),
+            f"{_meeting(mission, first, last, worst)} {'gusts' if what == 'gust' else 'wind'} of {most:.1f} m/s"
+            f"{_in_members(count, members)}, more than the limit of {limit:g} m/s: another departure or a lower or more"
+            " sheltered way",
+            at=samples.places[at], value=most, limit=limit, unit="m/s",
+        )  # fmt: skip
+
+
+def severity_in(count: int, members: int, robust: float) -> Severity:
+    """What breaks in so many of the members: a warning in as many as the share `robust` leaves over."""
+    return "warning" if members > 1 and count <= (1 - robust) * members + _ROUNDING else "danger"
+
+
+def _meeting(mission: Judged, first: int, last: int, worst: int) -> str:
+    """Legs in a row that meet something, in words; by their indices."""
+    leg = leg_name(mission.legs[worst])
+    return f"{leg} meets" if first == last else f"legs {first + 1} to {last + 1} meet, at worst on {leg},"
+
+
+def _in_members(count: int, members: int) -> str:
+    """In which members it is, in words."""
+    return f" in the strongest of {members} members, {count} of which break it" if members > 1 else ""
 
 
 def _first(mission: Judged, flags: BoolArray) -> Iterator[tuple[int, int]]:
