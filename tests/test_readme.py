@@ -142,4 +142,4 @@ def test_the_two_commands_stand_in_the_first_shell_block():
     assert block is not None
     first, second = block[1].splitlines()
     assert first.endswith("gcs-windplan plan missions/jacksboro.yaml")
-    assert second.endswith("-m pytest")
+    assert second.endswith("-m pytest -n auto --dist loadfile")
