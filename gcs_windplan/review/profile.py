@@ -44,7 +44,8 @@ def _draw_speeds(axes: Any, plan: Plan, flown: FloatArray) -> None:
     along = [leg.wind_along for leg in plan.legs]
     km = flown / 1000
     axes.stairs(ground, km, color="#0072b2", lw=2, baseline=None, label="ground speed")
-    axes.axhline(plan.request.vehicle.airspeed, color="#555555", lw=1, ls=":", label="airspeed")
+    air = [leg.airspeed for leg in plan.legs]
+    axes.stairs(air, km, color="#555555", lw=1, ls=":", baseline=None, label="airspeed")
     axes.stairs(
         along,
         km,
@@ -55,4 +56,4 @@ def _draw_speeds(axes: Any, plan: Plan, flown: FloatArray) -> None:
         alpha=0.35,
         label="tail wind (+), head wind (−)",
     )
-    dress_speeds(axes, float(flown[-1]), max(*ground, plan.request.vehicle.airspeed))
+    dress_speeds(axes, float(flown[-1]), max(*ground, *air))
