@@ -72,8 +72,8 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 def _interrupt_now(_number: int, frame: FrameType | None) -> None:
     """Raise KeyboardInterrupt, but not out of an import: after it.
 
-    The import system's own callbacks swallow an exception and print its traceback, and modules written in C turn it into
-    an ImportError.
+    The import system's own callbacks swallow an exception and print its traceback, and modules written in C turn it
+    into an ImportError.
     """
     while frame is not None and _CAN_WAIT:
         if frame.f_code.co_filename.startswith("<frozen importlib"):
