@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import gcs_windplan as gw
-from gcs_windplan.request import Request, Site, Uniform
+from gcs_windplan.planning.request import Request, Site, Uniform
 from gcs_windplan.wind.field import Steady
 from tests.worlds import rough_dem
 

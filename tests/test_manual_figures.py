@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gcs_windplan.reproduction.cases import CASES, make_rules, make_terrain, make_vehicle
-from gcs_windplan.reproduction.flying import SHAPED, fly_case, sites_of
-from gcs_windplan.reproduction.graphs import lay_uniform
-from gcs_windplan.reproduction.published import ANGLE, DISTANCE, HYBRID
-from gcs_windplan.spec.airframe import read_airframe
+from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.paper.cases import CASES, make_rules, make_terrain, make_vehicle
+from gcs_windplan.paper.flying import SHAPED, fly_case, sites_of
+from gcs_windplan.paper.graphs import lay_uniform
+from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID
 from gcs_windplan.vehicle import best_range_airspeed, energy_per_metre, least_power_airspeed
-from tests.mission.test_duration import predicted_duration
+from tests.flight.test_duration import predicted_duration
 from tests.vehicle.test_power_rotors import ZENG
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Dem, Extent
-from gcs_windplan.veil import Clearance
 from gcs_windplan.wind.field import Steady
 
 

@@ -7,7 +7,7 @@ from datetime import datetime
 from typing import Literal, TypeAlias
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 #: danger: do not fly it like this; warning: look at it before flying.
@@ -68,7 +68,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class JudgedLeg:
-    """From one stop to the next; figures as in `gcs_windplan.flight.Leg`.
+    """From one stop to the next; figures as in `gcs_windplan.flight.flight.Leg`.
 
     `item` is the one that it leads to. Angles in degrees from true north, lengths in m, speeds in m/s, means over the
     leg. `gradient` is climb by level distance. `airspeed` is what it is flown at in that wind. `seconds` as the

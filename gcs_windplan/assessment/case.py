@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from gcs_windplan.assessment.assessment import Limits, Source
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission import Mission
+from gcs_windplan.scene import Airspace
 from gcs_windplan.terrain import Obstacles, Terrain
 from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
-from gcs_windplan.veil import Airspace
 from gcs_windplan.wind.field import WindField
 
 

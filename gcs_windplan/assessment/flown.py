@@ -13,7 +13,7 @@ from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.known import KnownWind, known_wind
 from gcs_windplan.assessment.motion import Going, Motion, circling_watts, energy, motion_in, waiting_watts, watts
 from gcs_windplan.assessment.track import Track
-from gcs_windplan.mission.duration import circling_seconds, circling_speed, time_course
+from gcs_windplan.flight.duration import circling_seconds, circling_speed, time_course
 
 _FEWEST, _MOST = 4, 160  # samples of a piece
 _MOST_ALL: Final = 60_000  # samples of a mission

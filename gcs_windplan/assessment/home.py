@@ -10,7 +10,7 @@ import numpy as np
 
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Home, Mission
 
 _FARTHEST: Final = 300_000.0  # [m] from the frame's origin, over which its distances are good to some metres

@@ -11,10 +11,10 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment.assessment import Outline
 from gcs_windplan.assessment.case import Case
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission import FencePolygon
+from gcs_windplan.scene import Prism
 from gcs_windplan.terrain import Obstacle
-from gcs_windplan.veil import Prism
 
 _SIDES: Final = 180  # of a circle
 _LONGEST: Final = 500.0  # [m] of a side that is as good as straight in latitude and longitude: bent by 6 mm at 50°

@@ -9,11 +9,11 @@ from typing import Final
 from gcs_windplan.assessment.assessment import Assessment, Limits, Source
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.judge import assess
+from gcs_windplan.flight.duration import pace_of
 from gcs_windplan.mission import Mission
-from gcs_windplan.mission.duration import pace_of
-from gcs_windplan.mission.planned import mission_of
-from gcs_windplan.planner import Plan
-from gcs_windplan.request import Request
+from gcs_windplan.planning.export import mission_of
+from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.request import Request
 from gcs_windplan.vehicle import Pace, Vehicle
 
 _FASTEST: Final = 1000.0  # [m/s] no limit

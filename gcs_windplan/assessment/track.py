@@ -13,7 +13,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission.course import Course, Move, Place, Told, course_of
+from gcs_windplan.mission.path import Course, Move, Place, Told, course_of
 
 _STEPS: Final = 24  # chords of a spline
 _SPLINE_FACTOR: Final = 4.0  # ArduPilot's SplineCurve.cpp: more than this makes no curve longer

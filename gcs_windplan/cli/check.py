@@ -68,8 +68,8 @@ def _read(file: Path) -> ReadMission:
 
     if file.suffix.lower() in _PLANNED:
         from gcs_windplan.cli.choices import read_request
-        from gcs_windplan.mission.planned import mission_of
-        from gcs_windplan.planner import plan_route
+        from gcs_windplan.planning.export import mission_of
+        from gcs_windplan.planning.planner import plan_route
 
         return ReadMission(mission_of(plan_route(read_request(file, None))))
     return read_mission(file)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 import typer
 
 if TYPE_CHECKING:
-    from gcs_windplan.request import Request
+    from gcs_windplan.planning.request import Request
 
 MissionFile: TypeAlias = Annotated[Path, typer.Argument(metavar="MISSION.yaml", help="The mission file.")]
 Airspeed: TypeAlias = Annotated[
@@ -26,8 +26,8 @@ def read_request(
 ) -> Request:
     """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in it."""
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.spec import read_mission
-    from gcs_windplan.spec.values import AIRSPEED_OR_FREE, FREE
+    from gcs_windplan.jobs.missionfile import read_mission
+    from gcs_windplan.jobs.missionfile.values import AIRSPEED_OR_FREE, FREE
 
     speed = None
     if airspeed is not None:

@@ -12,7 +12,7 @@ import typer
 from gcs_windplan.cli.choices import Airspeed, MissionFile, read_request
 
 if TYPE_CHECKING:
-    from gcs_windplan.departures import Departure
+    from gcs_windplan.planning.departures import Departure
 
 HELP = (
     "When to fly: the best route at each departure in the mission's forecast; time, its spread over the ensemble's"
@@ -42,8 +42,8 @@ def departures(
     """Plan at each departure and print a table."""
     import time
 
-    from gcs_windplan.departures import moments_between, sweep
-    from gcs_windplan.spec import read_document
+    from gcs_windplan.jobs.missionfile import read_document
+    from gcs_windplan.planning.departures import moments_between, sweep
 
     day = read_document(mission).model.departure
     begin = _moment("--from", first, day)
@@ -76,7 +76,7 @@ _STEPS = {"s": 1.0, "sec": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
 def _moment(option: str, text: str, day: datetime | None) -> datetime:
     """A time of day in UTC on the mission's day, or a date and time with its offset."""
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.spec.values import Moment
+    from gcs_windplan.jobs.missionfile.values import Moment
 
     clock = _CLOCK.fullmatch(text.strip())
     if clock is not None:

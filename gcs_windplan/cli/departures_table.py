@@ -13,8 +13,8 @@ from gcs_windplan.cores import available_cores
 from gcs_windplan.flight import clock
 
 if TYPE_CHECKING:
-    from gcs_windplan.departures import Departure
-    from gcs_windplan.request import Request
+    from gcs_windplan.planning.departures import Departure
+    from gcs_windplan.planning.request import Request
 
 _BAR = 10  # characters of the longest time
 

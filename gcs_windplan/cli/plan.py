@@ -11,8 +11,8 @@ import typer
 from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, output_folder, read_request
 
 if TYPE_CHECKING:
-    from gcs_windplan.planner import Plan
-    from gcs_windplan.request import Request
+    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.request import Request
 
 HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
 
@@ -35,8 +35,8 @@ def plan(
     request = read_request(mission, airspeed)
 
     from gcs_windplan.cli.tables import print_legs
-    from gcs_windplan.cost import CostChoice
-    from gcs_windplan.planner import plan_route, plan_routes
+    from gcs_windplan.planning.cost import CostChoice
+    from gcs_windplan.planning.planner import plan_route, plan_routes
 
     if cost is not None and cost != request.cost.name:
         request = replace(request, cost=CostChoice(cost))  # type: ignore[arg-type]
@@ -60,8 +60,8 @@ def render(planned: Plan) -> dict[str, str | bytes]:
     """The content of every file of a plan, by file name; nothing is written yet."""
     from gcs_windplan.formats import format_plan, format_waypoints
     from gcs_windplan.formats.summary import format_summary
-    from gcs_windplan.mission.planned import mission_of
-    from gcs_windplan.review import draw_map, draw_profile
+    from gcs_windplan.planning.export import mission_of
+    from gcs_windplan.report import draw_map, draw_profile
 
     request = planned.request
     stem = file_stem(request)

@@ -133,7 +133,7 @@ def _with_home(mission: Mission, home: Home | None) -> Mission:
     from dataclasses import replace
 
     from gcs_windplan.errors import RefusedError
-    from gcs_windplan.geodesy import GeoPoint
+    from gcs_windplan.geo.frame import GeoPoint
     from gcs_windplan.mission import Home, fence_items, rally_items
 
     if home is None:

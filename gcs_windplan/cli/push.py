@@ -67,8 +67,8 @@ def push(
 def _mission(file: Path, kinds: str | None) -> Mission:
     if file.suffix.lower() in _PLANNED:
         from gcs_windplan.cli.choices import read_request
-        from gcs_windplan.mission.planned import mission_of
-        from gcs_windplan.planner import plan_route
+        from gcs_windplan.planning.export import mission_of
+        from gcs_windplan.planning.planner import plan_route
 
         return mission_of(plan_route(read_request(file, None)))
     from gcs_windplan.formats import read_mission

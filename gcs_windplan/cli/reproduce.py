@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from gcs_windplan.reproduction import Table
+    from gcs_windplan.paper import Table
 
 _WIDTH = 140  # where the output is no terminal
 
@@ -23,7 +23,7 @@ def reproduce(
 ) -> None:
     """Reproduce and write."""
     from gcs_windplan.cli.plan import write
-    from gcs_windplan.reproduction import reproduce as fly_again
+    from gcs_windplan.paper import reproduce as fly_again
 
     _make(output)
     done = fly_again(quick)

@@ -131,7 +131,7 @@ def _write(
     """Write the page and what is wanted beside it, all or nothing, and never over what was read."""
     from gcs_windplan.cli.plan import write
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.review.page import render_page
+    from gcs_windplan.report.page import render_page
 
     page = output if output is not None else _default(assessments)
     if page.is_dir():
@@ -143,7 +143,7 @@ def _write(
         stem = page.stem if len(assessments) == 1 else f"{page.stem}-{number}"
         files.update(_beside(assessment, stem, wanted))
     if "png" in wanted:
-        from gcs_windplan.review import draw_assessment_map
+        from gcs_windplan.report import draw_assessment_map
 
         files[f"{page.stem}.map.png"] = draw_assessment_map(assessments)
     over = next((file for file in read if (page.parent / file.name).resolve() == file.resolve()), None)
@@ -165,7 +165,7 @@ def _beside(assessment: Assessment, stem: str, wanted: Sequence[str]) -> dict[st
     texts = {"kml": format_kml, "geojson": format_geojson, "csv": format_legs_csv}
     files: dict[str, str | bytes] = {f"{stem}.{kind}": texts[kind](assessment) for kind in wanted if kind in texts}
     if "png" in wanted:
-        from gcs_windplan.review import draw_assessment_profile
+        from gcs_windplan.report import draw_assessment_profile
 
         files[f"{stem}.profile.png"] = draw_assessment_profile(assessment)
     return files

@@ -34,9 +34,9 @@ def assessment_of(file: Path, world: Path | None, options: Options) -> Assessmen
 def _planned(file: Path, options: Options) -> Case:
     """The mission that planning a mission file comes to, in its world."""
     from gcs_windplan.assessment.planned import case_of
-    from gcs_windplan.mission.planned import mission_of
-    from gcs_windplan.planner import plan_routes
-    from gcs_windplan.spec import read_mission
+    from gcs_windplan.jobs.missionfile import read_mission
+    from gcs_windplan.planning.export import mission_of
+    from gcs_windplan.planning.planner import plan_routes
 
     _refuse_two_worlds(file, options)
     request = read_mission(file, read_departure(options))
@@ -68,8 +68,8 @@ def _read(file: Path, world: Path | None, options: Options) -> Case:
 def _in_world(file: Path, world: Path, options: Options) -> Case:
     """The case of a mission file's world, to put another mission into."""
     from gcs_windplan.assessment.planned import case_of
+    from gcs_windplan.jobs.missionfile import read_mission
     from gcs_windplan.mission import Mission
-    from gcs_windplan.spec import read_mission
 
     _refuse_two_worlds(world, options)
     request = read_mission(world, read_departure(options))
@@ -87,7 +87,7 @@ def _refuse_two_worlds(file: Path, options: Options) -> None:
 
 def _sources_of(file: Path, case_wind: str, role: str | None = "mission") -> Iterator[Source]:
     """The mission file, and the files that it names."""
-    from gcs_windplan.spec import read_document
+    from gcs_windplan.jobs.missionfile import read_document
 
     document = read_document(file)
     model = document.model

@@ -13,7 +13,7 @@ from gcs_windplan.errors import InputError, Problem, WindError
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Case, Limits
-    from gcs_windplan.geodesy import GeoPoint, LocalFrame
+    from gcs_windplan.geo.frame import GeoPoint, LocalFrame
     from gcs_windplan.mission import Home, Mission
     from gcs_windplan.terrain import Extent, Terrain
     from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
@@ -127,8 +127,8 @@ def _refuse_limits_unknown(case: Case, options: Options) -> None:
 
 def limits_with(own: Limits, options: Options, defaults: bool = False) -> Limits:
     """The limits with those that the options name; `defaults` fills in a clearance of 30 m and a first leg of 500 m."""
-    from gcs_windplan.spec.units import SHARE, SPEED
-    from gcs_windplan.spec.values import CLEARANCE, HEIGHT, Measure
+    from gcs_windplan.jobs.missionfile.values import CLEARANCE, HEIGHT, Measure
+    from gcs_windplan.units import SHARE, SPEED
 
     speed, share = Measure(SPEED, above=0), Measure(SHARE, at_least=0, at_most=1)
     asked = {
@@ -150,7 +150,7 @@ def limits_with(own: Limits, options: Options, defaults: bool = False) -> Limits
 
 def read_departure(options: Options) -> datetime | None:
     """The departure that the options name."""
-    from gcs_windplan.spec.values import Moment
+    from gcs_windplan.jobs.missionfile.values import Moment
 
     text = options.departure
     return None if text is None else told("--departure", lambda: Moment().read(text))
@@ -158,8 +158,8 @@ def read_departure(options: Options) -> datetime | None:
 
 def read_home(text: str) -> tuple[GeoPoint, float | None]:
     """Latitude, longitude and perhaps the altitude AMSL [m] of a home."""
-    from gcs_windplan.geodesy import GeoPoint
-    from gcs_windplan.spec.values import LATITUDE, LONGITUDE, SIGNED_LENGTH
+    from gcs_windplan.geo.frame import GeoPoint
+    from gcs_windplan.jobs.missionfile.values import LATITUDE, LONGITUDE, SIGNED_LENGTH
 
     parts = text.split(",")
     if len(parts) not in (2, 3):
@@ -173,7 +173,7 @@ def read_home(text: str) -> tuple[GeoPoint, float | None]:
 
 
 def _airframe(path: Path) -> Airframe:
-    from gcs_windplan.spec.airframe import read_airframe
+    from gcs_windplan.jobs.missionfile.airframe import read_airframe
 
     return read_airframe(path)
 
@@ -233,8 +233,8 @@ def _winds(
 
 def _is_speed(text: str) -> bool:
     """Whether words are a speed and nothing else."""
-    from gcs_windplan.spec.units import SPEED
-    from gcs_windplan.spec.values import Measure
+    from gcs_windplan.jobs.missionfile.values import Measure
+    from gcs_windplan.units import SPEED
 
     try:
         Measure(SPEED, at_least=0).read(text)
@@ -245,7 +245,7 @@ def _is_speed(text: str) -> bool:
 
 def _pace(autopilot: Autopilot, airframe: Airframe | None) -> Pace:
     from gcs_windplan.assessment.planned import pace_with_rates
-    from gcs_windplan.mission.duration import pace_of
+    from gcs_windplan.flight.duration import pace_of
 
     pace = pace_of(autopilot)
     if airframe is None:
@@ -271,7 +271,7 @@ def _own_limits(airframe: Airframe | None) -> Limits:
 
 def _places(mission: Mission, options: Options) -> list[tuple[str, GeoPoint]]:
     """All places of a mission, with what they are."""
-    from gcs_windplan.geodesy import GeoPoint
+    from gcs_windplan.geo.frame import GeoPoint
 
     places = [
         (f"item {n}", GeoPoint(item.latitude_deg, item.longitude_deg))
@@ -290,7 +290,7 @@ def _frame(mission: Mission, options: Options, file: Path) -> LocalFrame:
     """The local frame about the middle of all places. Raises `InputError` without any, and for one too far away."""
     import numpy as np
 
-    from gcs_windplan.geodesy import GeoPoint, LocalFrame
+    from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 
     places = _places(mission, options)
     if not places or not mission.items:

@@ -13,7 +13,7 @@ def schema(
     json: Annotated[bool, typer.Option("--json", help="As JSON Schema, for editors.")] = False,
 ) -> None:
     """Print the schema's reference."""
-    from gcs_windplan.spec.reference import json_schema, schema_reference
+    from gcs_windplan.jobs.missionfile.reference import json_schema, schema_reference
 
     if json:
         from json import dumps

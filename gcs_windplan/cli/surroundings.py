@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from gcs_windplan.errors import InputError, Problem, WindError
 
 if TYPE_CHECKING:
-    from gcs_windplan.geodesy import LocalFrame
+    from gcs_windplan.geo.frame import LocalFrame
     from gcs_windplan.terrain import Extent, Terrain
     from gcs_windplan.wind import LogLaw, PowerLaw, Wanted, WindField
 
@@ -43,7 +43,7 @@ def is_file(name: str) -> bool:
 def terrain_by_name(names: Sequence[str], frame: LocalFrame, area: Extent) -> Terrain:
     """The ground in files, or the one that a word names. Raises `TerrainError`, or `InputError` for a word unknown."""
     from gcs_windplan import terrain as ground
-    from gcs_windplan.spec.values import SIGNED_LENGTH
+    from gcs_windplan.jobs.missionfile.values import SIGNED_LENGTH
 
     if list(names) == ["sample:jacksboro"]:
         return ground.sample_dem(frame, area)
@@ -92,8 +92,8 @@ def told(option: str, read: Callable[[], T]) -> T:
 def _constant(speed: str, direction: str, frame: LocalFrame) -> WindField:
     """The same wind everywhere."""
     from gcs_windplan import wind
-    from gcs_windplan.spec.units import ANGLE, SPEED
-    from gcs_windplan.spec.values import Measure
+    from gcs_windplan.jobs.missionfile.values import Measure
+    from gcs_windplan.units import ANGLE, SPEED
 
     blows = told("--wind", lambda: Measure(SPEED, at_least=0).read(speed))
     whence = told("--wind", lambda: Measure(ANGLE, at_least=0, at_most=360).read(direction))
@@ -103,8 +103,8 @@ def _constant(speed: str, direction: str, frame: LocalFrame) -> WindField:
 def _law(text: str | None) -> PowerLaw | LogLaw | None:
     """How the wind changes with height: `power:0.143`, `log:0.1`."""
     from gcs_windplan import wind
-    from gcs_windplan.spec.units import LENGTH, NUMBER
-    from gcs_windplan.spec.values import Measure
+    from gcs_windplan.jobs.missionfile.values import Measure
+    from gcs_windplan.units import LENGTH, NUMBER
 
     if text is None:
         return None

@@ -12,7 +12,7 @@ from rich.table import Table
 from gcs_windplan.flight import clock
 
 if TYPE_CHECKING:
-    from gcs_windplan.planner import Plan
+    from gcs_windplan.planning.planner import Plan
 
 _WIDTH, _WIDE = 100, 120  # where the output is no terminal
 
@@ -66,7 +66,7 @@ def _whole_watt_hours(joules: float) -> str:
 
 def flown_line(plan: Plan) -> str | None:
     """How long the autopilot takes for the mission, in words; None where that is not known."""
-    from gcs_windplan.mission.planned import flown_duration
+    from gcs_windplan.planning.export import flown_duration
 
     if not plan.request.export.speed_changes or (flown := flown_duration(plan)) is None:
         return None

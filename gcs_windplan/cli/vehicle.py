@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from gcs_windplan.link.standin.vehicle import StandInOptions
     from gcs_windplan.link.transport import Transport
     from gcs_windplan.mission import Home
-    from gcs_windplan.request import Request
+    from gcs_windplan.planning.request import Request
+    from gcs_windplan.standin.vehicle import StandInOptions
     from gcs_windplan.vehicle import Autopilot
     from gcs_windplan.wind.field import WindField
 
@@ -91,7 +91,7 @@ def vehicle(
     key = read_key(sign) if sign is not None else None
     transport = open_transport(listen)  # before anything slow: a wrong address is told at once
     try:
-        from gcs_windplan.link.standin.rules import ServerOptions
+        from gcs_windplan.standin.rules import ServerOptions
 
         server = ServerOptions(system=sysid, capacity=capacity, mavlink1=mavlink1)
         options = _options(name, request, place, field, speed, server=server, speedup=speedup, fly=fly)
@@ -108,8 +108,8 @@ def _serve(options: StandInOptions, transport: Transport, listen: str, key: byte
 
     from gcs_windplan.errors import LinkError
     from gcs_windplan.link.codec import Codec
-    from gcs_windplan.link.standin.service import serve
-    from gcs_windplan.link.standin.vehicle import StandIn
+    from gcs_windplan.standin.service import serve
+    from gcs_windplan.standin.vehicle import StandIn
 
     began = time.monotonic()
 
@@ -143,9 +143,9 @@ def _options(
     """What the command line and the mission file make together."""
     from dataclasses import replace
 
-    from gcs_windplan.link.standin.airframe import airframe_of
-    from gcs_windplan.link.standin.vehicle import StandInOptions
-    from gcs_windplan.link.standin.world import planned_world, simulator_world, world_at
+    from gcs_windplan.standin.airframe import airframe_of
+    from gcs_windplan.standin.vehicle import StandInOptions
+    from gcs_windplan.standin.world import planned_world, simulator_world, world_at
 
     if request is not None:
         world = planned_world(request, home, wind)
@@ -180,7 +180,7 @@ def _wind(text: str | None) -> WindField | None:
     if text is None:
         return None
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.spec.units import ANGLE, SPEED, read_quantity
+    from gcs_windplan.units import ANGLE, SPEED, read_quantity
     from gcs_windplan.wind.analytic import ConstantWind
 
     speed, at, direction = text.partition("@")
@@ -196,7 +196,7 @@ def _airspeed(text: str | None) -> float | None:
     if text is None:
         return None
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.spec.values import AIRSPEED
+    from gcs_windplan.jobs.missionfile.values import AIRSPEED
 
     try:
         return AIRSPEED.read(text)
@@ -209,7 +209,7 @@ def _home(text: str | None) -> Home | None:
     if text is None:
         return None
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.geodesy import GeoPoint
+    from gcs_windplan.geo.frame import GeoPoint
     from gcs_windplan.mission import Home
 
     try:

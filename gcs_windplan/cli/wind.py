@@ -11,7 +11,7 @@ import typer
 
 if TYPE_CHECKING:
     from gcs_windplan.cli.wind_options import Asked, View
-    from gcs_windplan.geodesy import GeoPoint
+    from gcs_windplan.geo.frame import GeoPoint
     from gcs_windplan.wind.report.inventory import OpenFile
     from gcs_windplan.wind.report.sounding import Altitude
     from gcs_windplan.wind.sheets import Catalogue

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from gcs_windplan.errors import InputError, Problem
-from gcs_windplan.geodesy import GeoPoint
-from gcs_windplan.spec.units import LENGTH
-from gcs_windplan.spec.values import CLEARANCE, LATITUDE, LONGITUDE, SIGNED_LENGTH, Measure, Moment
+from gcs_windplan.geo.frame import GeoPoint
+from gcs_windplan.jobs.missionfile.values import CLEARANCE, LATITUDE, LONGITUDE, SIGNED_LENGTH, Measure, Moment
+from gcs_windplan.units import LENGTH
 from gcs_windplan.wind.report.excerpt import Choice
 from gcs_windplan.wind.report.sounding import Altitude
 from gcs_windplan.wind.sheets import Level

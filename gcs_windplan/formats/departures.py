@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from gcs_windplan.departures import Departure
-    from gcs_windplan.request import Request
+    from gcs_windplan.planning.departures import Departure
+    from gcs_windplan.planning.request import Request
 
 
 def _finite(numbers: Sequence[float]) -> list[float | None]:

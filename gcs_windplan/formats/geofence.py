@@ -21,7 +21,7 @@ from gcs_windplan.errors import FormatError, InputError
 from gcs_windplan.formats.digits import json_degrees, json_number, json_place
 from gcs_windplan.formats.document import Node
 from gcs_windplan.formats.reading import Repairs
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Fence, FenceCircle, FencePolygon, Frame, Home, RallyPoint, ReturnPoint
 
 _T = TypeVar("_T")

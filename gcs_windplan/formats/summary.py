@@ -7,10 +7,10 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from gcs_windplan.mission.planned import flown_duration
+from gcs_windplan.planning.export import flown_duration
 
 if TYPE_CHECKING:
-    from gcs_windplan.planner import Plan
+    from gcs_windplan.planning.planner import Plan
 
 
 def format_summary(plan: Plan) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.outcome import Reason
 from gcs_windplan.link.peer import Peer, sender

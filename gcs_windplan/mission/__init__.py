@@ -1,6 +1,5 @@
 """Missions: items, commands and frames, fences and rally points, and how a planned route becomes a mission."""
 
-from gcs_windplan.mission.build import RoutePoint, route_mission
 from gcs_windplan.mission.commands import (
     Command,
     Frame,
@@ -11,7 +10,6 @@ from gcs_windplan.mission.commands import (
     scales_place,
     takes_place,
 )
-from gcs_windplan.mission.duration import FlownLeg, MissionDuration, WindAlong, duration_of
 from gcs_windplan.mission.fence import (
     Fence,
     FenceCircle,
@@ -30,19 +28,14 @@ __all__ = [
     "Fence",
     "FenceCircle",
     "FencePolygon",
-    "FlownLeg",
     "Frame",
     "Home",
     "Mission",
-    "MissionDuration",
     "MissionItem",
     "RallyPoint",
     "ReturnPoint",
-    "RoutePoint",
-    "WindAlong",
     "command_name",
     "degrees_e7",
-    "duration_of",
     "fence_items",
     "fence_of",
     "frame_name",
@@ -50,7 +43,6 @@ __all__ = [
     "plain_frame",
     "rally_items",
     "rally_of",
-    "route_mission",
     "scales_place",
     "takes_place",
 ]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission.commands import Command, Frame, command_name, frame_name, is_global, plain_frame
 from gcs_windplan.mission.items import MissionItem, degrees_e7
 

@@ -7,14 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
-from gcs_windplan.mission.commands import (
-    command_name,
-    frame_name,
-    is_global,
-    scales_place,
-    takes_place,
-)
+from gcs_windplan.geo.frame import GeoPoint
+from gcs_windplan.mission.commands import command_name, frame_name, is_global, scales_place, takes_place
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.kernels import heightfield
 from gcs_windplan.terrain.gridmap import Georeference, GridMap, fit_grid_map
 from gcs_windplan.terrain.surface import Extent

@@ -17,7 +17,7 @@ from numpy.polynomial.polynomial import polyval2d
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.terrain.surface import Extent
 
 MAP_ERROR = 0.01  # [m] the most by which the polynomial may stray from the exact way

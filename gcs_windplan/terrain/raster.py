@@ -19,7 +19,7 @@ from rasterio.warp import transform as warp
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.terrain.dem import Dem
 from gcs_windplan.terrain.rastertile import RasterTile, describe, trouble
 from gcs_windplan.terrain.surface import Extent

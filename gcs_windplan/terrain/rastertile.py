@@ -18,9 +18,9 @@ from rasterio.errors import NotGeoreferencedWarning, RasterioError
 from rasterio.windows import Window as RasterWindow
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.constants import INTERNATIONAL_FOOT, US_SURVEY_FOOT
 from gcs_windplan.errors import Problem, TerrainError
 from gcs_windplan.terrain.window import Window
+from gcs_windplan.units import INTERNATIONAL_FOOT, US_SURVEY_FOOT
 
 _METRES = ("", "m", "metre", "metres", "meter", "meters")
 _FEET = ("ft", "foot", "feet", "international foot", "international feet")

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain.dem import Dem
 from gcs_windplan.terrain.gridmap import GeographicGrid
 from gcs_windplan.terrain.surface import Extent

@@ -12,7 +12,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import LocalFrame, rotate
+from gcs_windplan.geo.frame import LocalFrame, rotate
 
 _DEGREE = 6
 _NODES = 12  # samples a side that the polynomial is fitted to, at Chebyshev's nodes

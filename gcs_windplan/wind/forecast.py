@@ -17,7 +17,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import pairing
 from gcs_windplan.wind.field import Ground

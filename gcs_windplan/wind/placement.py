@@ -15,7 +15,7 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.wind.chart import Chart, monomials
 from gcs_windplan.wind.sheets import Grid
 

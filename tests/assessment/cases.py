@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gcs_windplan.assessment import Assessment, Case, Finding, Limits, assess
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import ARDUCOPTER_PACE, Airframe, Battery, PowerTable, Vehicle

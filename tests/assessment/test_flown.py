@@ -12,14 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs_windplan.assessment import Assessment, Case, assess
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
-from gcs_windplan.mission import Command, Home, Mission, MissionItem, duration_of
+from gcs_windplan.flight.duration import duration_of
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
+from gcs_windplan.mission import Command, Home, Mission, MissionItem
 from gcs_windplan.terrain import flat
 from gcs_windplan.vehicle import PX4_PACE, air_density, return_seconds
 from gcs_windplan.wind import Calm, ConstantWind
 from gcs_windplan.wind.field import Steady
 from tests.assessment.cases import GROUND, HOME, RETURN, SWIFT, airframe, at, case, found, free, judged
-from tests.mission.test_duration import _read
+from tests.flight.test_duration import _read
 from tests.oracles.judging import airspeed_for, energy_of, ground_speed_at
 from tests.worlds import ShiftingWind, WavyWind
 

@@ -9,8 +9,8 @@ import pytest
 
 import gcs_windplan as gw
 from gcs_windplan.assessment import Stop, assess_plan
-from gcs_windplan.mission.planned import flown_duration
-from gcs_windplan.planner import plan_routes
+from gcs_windplan.planning.export import flown_duration
+from gcs_windplan.planning.planner import plan_routes
 from gcs_windplan.wind import WindField
 
 one_millimetre = 1e-3

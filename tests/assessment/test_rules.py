@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from gcs_windplan.assessment import Limits, Source, assess
 from gcs_windplan.errors import InputError, WindError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Fence, FenceCircle, FencePolygon, Home, RallyPoint
+from gcs_windplan.scene import Airspace, Prism
 from gcs_windplan.terrain import Dem, Obstacle, Obstacles
 from gcs_windplan.vehicle import Airframe, Battery, FixedWing, Vehicle, air_density
-from gcs_windplan.veil import Airspace, Prism
 from gcs_windplan.wind import ConstantWind
 from gcs_windplan.wind.field import Steady
 from tests.assessment.cases import (

@@ -12,7 +12,7 @@ from gcs_windplan.assessment import assess
 from gcs_windplan.assessment.home import with_home
 from gcs_windplan.assessment.track import track_of
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Home, MissionItem
 from gcs_windplan.vehicle import PX4_PACE
 from tests.assessment.cases import (

@@ -77,7 +77,7 @@ def scipy_interpolation(kind: str) -> Measured:
 def changing_plan(spacing: str) -> Measured:
     """A whole plan, shaping too, in the control member of the 3-hourly forecast, kernels warm."""
     import gcs_windplan as gw
-    from gcs_windplan.request import Uniform
+    from gcs_windplan.planning.request import Uniform
 
     request = _across(FRONT)
     control = replace(
@@ -100,8 +100,8 @@ def changing_plan(spacing: str) -> Measured:
 
 def departures(count: str, cores: str) -> Measured:
     """A sweep over a day of departures in all ten members over the Jacksboro fault."""
-    from gcs_windplan.departures import moments_between, sweep
-    from gcs_windplan.request import Uniform
+    from gcs_windplan.planning.departures import moments_between, sweep
+    from gcs_windplan.planning.request import Uniform
 
     first = datetime(2026, 5, 1, 6, tzinfo=UTC)
     every = timedelta(hours=23.5) / (int(count) - 1)

@@ -43,9 +43,9 @@ def bounded(n: str, neighbours: str, way: str, bound: str) -> Measured:
 
 
 def _search(world: Square, neighbours: int, way: str, bound: str = "h2") -> dict[str, float]:
-    from gcs_windplan.cost import CostChoice, LegCost
     from gcs_windplan.kernels.best_first import search_grid
-    from gcs_windplan.veil.grid import grid_steps
+    from gcs_windplan.planning.cost import CostChoice, LegCost
+    from gcs_windplan.planning.veil.grid import grid_steps
     from gcs_windplan.wind import Calm
 
     start, goal = world.ends(way)
@@ -120,7 +120,7 @@ def networkx_dijkstra(n: str, neighbours: str, way: str) -> Measured:
 def plan(nodes: str, neighbours: str) -> Measured:
     """All of planning but shaping, over real ground in a gridded wind: veil with exact clearance, winds, search."""
     import gcs_windplan as gw
-    from gcs_windplan.request import Uniform
+    from gcs_windplan.planning.request import Uniform
 
     request = gw.read_mission(MISSION)
     box = request.terrain.extent

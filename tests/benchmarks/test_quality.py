@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import gcs_windplan as gw
-from gcs_windplan.request import Request, Roadmap, Uniform
-from gcs_windplan.siting import choose_area, choose_layers, choose_nodes, choose_spacing
-from gcs_windplan.veil import SHARE_OF_GRID
+from gcs_windplan.planning.request import Request, Roadmap, Uniform
+from gcs_windplan.planning.sites import choose_area, choose_layers, choose_nodes, choose_spacing
+from gcs_windplan.planning.veil import SHARE_OF_GRID
 from tests.oracles.limits import OTHERS, PAPER, Limit
 from tests.test_real_worlds import BUTTE, DAVOS
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gcs_windplan.geodesy import LocalFrame
+from gcs_windplan.geo.frame import LocalFrame
+from gcs_windplan.planning.veil.grid import grid_steps
 from gcs_windplan.terrain import SAMPLE_CENTRE, Dem, Extent, sample_dem
 from gcs_windplan.vehicle import Vehicle
-from gcs_windplan.veil.grid import grid_steps
 
 SPACING = 14.0  # [m]
 VEHICLE = Vehicle(12.0, climb=5.0, descent=5.0)

@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 
 from gcs_windplan.cli.app import app
 from gcs_windplan.formats import read_mission, write_plan, write_waypoints
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Home, Mission, MissionItem
 
 CORPUS = Path(__file__).parents[3] / "shared" / "data" / "missions"

@@ -83,8 +83,8 @@ def test_bad_times_are_one_clear_error(words, message):
 
 
 def test_what_the_workers_find_is_what_one_core_finds():
-    from gcs_windplan.departures import moments_between, sweep
-    from gcs_windplan.spec import read_mission
+    from gcs_windplan.jobs.missionfile import read_mission
+    from gcs_windplan.planning.departures import moments_between, sweep
 
     first = datetime.fromisoformat("2026-05-01T07:00Z")
     moments = moments_between(first, first + timedelta(hours=2), timedelta(hours=1))

@@ -8,18 +8,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from gcs_windplan.geodesy import GeoPoint
-from gcs_windplan.mission import (
-    Command,
-    Frame,
-    Home,
-    Mission,
-    MissionItem,
-    RoutePoint,
-    degrees_e7,
-    plain_frame,
-    route_mission,
-)
+from gcs_windplan.geo.frame import GeoPoint
+from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7, plain_frame
+from gcs_windplan.planning.route_items import RoutePoint, route_mission
 
 HOME = Home(GeoPoint(46.813437951, 9.843772049), 1560.25)
 ROUTE = (

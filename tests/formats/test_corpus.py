@@ -19,7 +19,7 @@ from gcs_windplan.formats import (
     read_plan,
     read_waypoints,
 )
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Mission, MissionItem
 
 from .conftest import MISSIONS, same_number

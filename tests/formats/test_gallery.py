@@ -15,7 +15,7 @@ import pytest
 import gcs_windplan as gw
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
 from gcs_windplan.mission import Command, Mission, fence_items, rally_items
-from gcs_windplan.planner import Plan
+from gcs_windplan.planning.planner import Plan
 from tests.oracles.fences import breaches
 
 MISSIONS = sorted((Path(__file__).resolve().parents[2] / "missions").glob("*.yaml"))

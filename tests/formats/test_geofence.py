@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import FormatError
 from gcs_windplan.formats import format_plan, format_waypoints, parse_plan, read_plan, write_plan
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Fence, Frame, MissionItem, RallyPoint, fence_items, rally_items
 from tests.mission.fences import BACK, FENCE, FIELD, MAST, RALLY, RANGE, WOOD, fences, rally_points
 

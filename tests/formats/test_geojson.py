@@ -13,7 +13,7 @@ import shapely
 
 from gcs_windplan.assessment import Assessment
 from gcs_windplan.formats.geojson import format_geojson, on_earth
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command
 from gcs_windplan.wind import ConstantWind
 from tests.assessment.cases import FRAME, TERRAIN, at, judged, ridge

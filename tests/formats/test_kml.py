@@ -12,7 +12,7 @@ import pytest
 from gcs_windplan.assessment import Limits
 from gcs_windplan.formats.kml import format_kml
 from gcs_windplan.mission import RallyPoint
-from gcs_windplan.veil import Airspace, Prism
+from gcs_windplan.scene import Airspace, Prism
 from tests.assessment.cases import RETURN, at, judged, point, ridge
 
 SPACE = {"k": "http://www.opengis.net/kml/2.2"}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from gcs_windplan.cost import integrate, performance_of
+from gcs_windplan.flight.sampling import integrate, performance_of
 from gcs_windplan.kernels import edges
 from gcs_windplan.kernels.triangle import ground_speed, leg_seconds, wind_angle
 from gcs_windplan.vehicle import Vehicle

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.firmware import outgoing_items
 from gcs_windplan.link.peer import Peer
 from gcs_windplan.link.session import Session

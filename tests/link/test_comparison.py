@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.comparison import Difference, compare_either_way, compare_items, loss_lines
-from gcs_windplan.link.standin import ardupilot_store
-from gcs_windplan.link.standin.items import MISSION, StoredItem, read_item
 from gcs_windplan.link.wire import item_to_message, message_to_item
 from gcs_windplan.mission import Command, Frame, MissionItem, command_name, takes_place
+from gcs_windplan.standin import ardupilot_store
+from gcs_windplan.standin.items import MISSION, StoredItem, read_item
 
 from .autopilots import PX4, ArduPilot, Refused, Stored
 

@@ -6,7 +6,7 @@ import math
 
 from hypothesis import strategies as st
 
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Fence, FenceCircle, FencePolygon, Frame, RallyPoint, ReturnPoint
 
 FIELD = FencePolygon((GeoPoint(46.80, 9.84), GeoPoint(46.83, 9.84), GeoPoint(46.83, 9.87), GeoPoint(46.80, 9.87)))

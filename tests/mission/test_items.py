@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7
 
 HERE = GeoPoint(46.8, 9.8)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
 from gcs_windplan.mission.lint import Firmware, lint, told
 

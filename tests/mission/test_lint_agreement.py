@@ -17,15 +17,15 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import FormatError, InputError
 from gcs_windplan.formats import read_mission
-from gcs_windplan.geodesy import GeoPoint
-from gcs_windplan.link.standin.items import MISSION, StoredItem, single
-from gcs_windplan.link.standin.px4_store import infeasible
-from gcs_windplan.link.standin.rules import Parked, mission_server
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.wire import item_to_message
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, takes_place
 from gcs_windplan.mission.kept import float_text, same_float
 from gcs_windplan.mission.lint import lint
 from gcs_windplan.mission.supported import PX4_WITH_PLACE, PX4_WITHOUT_PLACE
+from gcs_windplan.standin.items import MISSION, StoredItem, single
+from gcs_windplan.standin.px4_store import infeasible
+from gcs_windplan.standin.rules import Parked, mission_server
 
 CORPUS = Path(__file__).parents[3] / "shared" / "data" / "missions"
 HOME = Home(GeoPoint(46.8, 9.8), 500.0)

@@ -9,7 +9,7 @@ import rasterio
 from affine import Affine
 from rasterio.warp import transform as warp
 
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Dem
 
 UTM = "EPSG:32632"

@@ -11,10 +11,10 @@ import rasterio
 from affine import Affine
 from rasterio.warp import transform as warp
 
-from gcs_windplan.constants import INTERNATIONAL_FOOT, US_SURVEY_FOOT
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Extent, read_dem
+from gcs_windplan.units import INTERNATIONAL_FOOT, US_SURVEY_FOOT
 from tests.terrain.rasters import FRAME, UTM, from_origin, relief, same_ground, utm_corner, write
 
 DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "dem"

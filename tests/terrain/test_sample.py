@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain import SAMPLE_CENTRE, Extent, sample_dem
 
 FRAME = LocalFrame(SAMPLE_CENTRE)
@@ -51,7 +51,7 @@ def test_elsewhere_it_says_how_far_it_is():
 def test_it_needs_neither_rasterio_nor_matplotlib_nor_trimesh():
     code = (
         "import sys; from gcs_windplan.terrain import SAMPLE_CENTRE, sample_dem; "
-        "from gcs_windplan.geodesy import LocalFrame; sample_dem(LocalFrame(SAMPLE_CENTRE)); "
+        "from gcs_windplan.geo.frame import LocalFrame; sample_dem(LocalFrame(SAMPLE_CENTRE)); "
         "print([m for m in ('rasterio', 'matplotlib', 'trimesh') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

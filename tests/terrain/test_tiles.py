@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import TerrainError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Extent, read_dem
 from tests.terrain.rasters import FRAME, UTM, from_origin, relief, same_ground, utm_corner, write, write_hgt
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.spec.airframe import read_airframe
+from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.vehicle import Airframe, Battery, Vehicle, best_range_airspeed, energy_per_metre
 from tests.vehicle.test_power_rotors import LIU
 from tests.vehicle.test_power_wings import AEROSONDE

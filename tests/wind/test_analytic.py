@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind import Calm, ConstantWind, Diverging, Jet, Rotation, WindField
 
 ONE_MM_PER_SECOND = 0.001

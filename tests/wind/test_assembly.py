@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
 from gcs_windplan.wind import Forecast, Wanted, read_forecast
 from gcs_windplan.wind.model_levels import heights_of_levels
 from tests.wind.grib_files import box, message

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
 from gcs_windplan.wind.chart import Chart, to_grid
 
 ONE_CENTIMETRE = 0.01

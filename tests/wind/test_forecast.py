@@ -15,7 +15,7 @@ import pytest
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
 from gcs_windplan.wind import GriddedWind, Ground, Wanted, read_forecast
 from tests.wind.trap_file import FROM_WEST, write_trap
 

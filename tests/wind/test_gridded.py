@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
 from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import GriddedWind
 from gcs_windplan.wind.placement import LatLonPlacement

@@ -11,7 +11,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind import Wanted, read_forecast
 
 FOLDER = Path(__file__).resolve().parents[2] / "missions" / "wind"

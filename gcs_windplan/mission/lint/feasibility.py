@@ -11,7 +11,7 @@ import math
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Command, Frame, plain_frame
 from gcs_windplan.mission.items import Mission, MissionItem
 from gcs_windplan.mission.kept import float_text

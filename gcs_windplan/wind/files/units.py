@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.constants import INTERNATIONAL_FOOT, KNOT, STANDARD_GRAVITY, STATUTE_MILE
+from gcs_windplan.constants import STANDARD_GRAVITY
 from gcs_windplan.errors import WindError
+from gcs_windplan.units import INTERNATIONAL_FOOT, KNOT, STATUTE_MILE
 from gcs_windplan.wind.sheets import Quantity
 
 

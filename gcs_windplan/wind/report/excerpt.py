@@ -18,19 +18,9 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind.forecast import Assembly, Wanted
-from gcs_windplan.wind.pairing import (
-    STEADY_FOR,
-    Members,
-    Pair,
-    Span,
-    Winds,
-    choose,
-    nothing_found,
-    pair_up,
-    say_time,
-)
+from gcs_windplan.wind.pairing import STEADY_FOR, Members, Pair, Span, Winds, choose, nothing_found, pair_up, say_time
 from gcs_windplan.wind.placement import Box, Part, part_of
 from gcs_windplan.wind.report.extent import ways_between
 from gcs_windplan.wind.sheets import Catalogue, Grid, Level

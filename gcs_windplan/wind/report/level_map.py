@@ -14,7 +14,7 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind.pairing import Winds
 from gcs_windplan.wind.placement import LatLonPlacement, Part, part_of
 from gcs_windplan.wind.report.excerpt import (

@@ -9,7 +9,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.wind.gridded import GriddedWind
 from gcs_windplan.wind.pairing import Span, Winds, choose, say_time
 from gcs_windplan.wind.report.excerpt import Choice, Excerpt, members_for, moment_in, part_at, winds_by_level

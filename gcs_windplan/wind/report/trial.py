@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind.forecast import Assembly, Wanted
 from gcs_windplan.wind.pairing import Span, Winds, choose
 from gcs_windplan.wind.placement import part_of

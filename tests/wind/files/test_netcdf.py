@@ -13,8 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs_windplan.constants import KNOT, STANDARD_GRAVITY
+from gcs_windplan.constants import STANDARD_GRAVITY
 from gcs_windplan.errors import WindError
+from gcs_windplan.units import KNOT
 from gcs_windplan.wind.files.netcdf import open_netcdf
 from gcs_windplan.wind.sheets import SURFACE, Level, LevelKind, Sheet
 from tests.wind.netcdf_maker import AXES, HOURS, LAT, LON, MS, NOON, Content, everything, wind, write_netcdf

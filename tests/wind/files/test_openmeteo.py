@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gcs_windplan.constants import KNOT, STATUTE_MILE
 from gcs_windplan.errors import WindError
+from gcs_windplan.units import KNOT, STATUTE_MILE
 from gcs_windplan.wind.files.openmeteo import open_openmeteo
 from gcs_windplan.wind.sheets import SURFACE, Level, Quantity, Sheet
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.wind.report.inventory import open_files
 from gcs_windplan.wind.report.level_map import (
     COLUMNS,

@@ -12,7 +12,7 @@ import pytest
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.geodesy import GeoPoint, LocalFrame
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.wind import Wanted, read_forecast
 from gcs_windplan.wind.report.excerpt import Choice
 from gcs_windplan.wind.report.inventory import open_files

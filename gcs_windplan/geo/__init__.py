@@ -1,0 +1,1 @@
+"""Places on the ellipsoid and the flat local frame."""

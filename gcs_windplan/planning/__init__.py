@@ -1,0 +1,8 @@
+"""Planning: a request becomes a veil, a path through it, a shaped route and its flight.
+
+The names are fetched when they are first asked for, so that only those who need numba import it.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

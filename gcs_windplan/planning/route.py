@@ -1,0 +1,211 @@
+"""One route: search and shape each section between two sites, one after the other in time, then choose airspeeds."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Final, NoReturn
+
+import numpy as np
+
+from gcs_windplan.arrays import FloatArray
+from gcs_windplan.errors import NoRouteError, Problem, RequestError
+from gcs_windplan.flight import fly
+from gcs_windplan.kernels.power import PowerGrid
+from gcs_windplan.planning.airspeeds import best_airspeeds
+from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.limits import limited
+from gcs_windplan.planning.request import Request
+from gcs_windplan.planning.search import WindyVeil, blow, find_open_path
+from gcs_windplan.planning.shaping import shape, with_spare_of_limits
+from gcs_windplan.scene import Clearance
+from gcs_windplan.vehicle import Vehicle
+from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
+
+#: [s] what a multicopter loses at a slight corner: over rough ground ArduCopter was quickest, by its own law, when
+#: waypoints that gain less were left out (0.5 and 1 s were alike, 0 and 2 s half a percent and more slower).
+_CORNER: Final = 0.7
+_HAIR: Final = 1.0  # [m] legs so short are none: half of ArduCopter's default waypoint radius
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ready:
+    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
+
+    The winds of `request` are closed a little below its limits, those of `asked` are as they blow. `power` is there
+    where the airframe is known.
+    """
+
+    request: Request
+    asked: Request
+    rules: Clearance
+    sites: FloatArray
+    windy: WindyVeil
+    seconds: float
+    power: PowerGrid | None = None
+
+    def in_the_mean(self) -> Ready:
+        """The same without the members of an ensemble: only their mean blows."""
+        if not self.request.members:
+            return self
+        request, asked = (replace(one, members=()) for one in (self.request, self.asked))
+        return replace(self, request=request, asked=asked, windy=blow(self.windy.veil, request.wind))
+
+    @property
+    def flown(self) -> Request:
+        """The request for whom flies a route that is found: its winds are closed at the limits themselves."""
+        return limited(self.asked, 0.0)
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle, at the largest airspeed if it is free to choose: so fast it goes where time is all."""
+        request = self.request
+        if not request.free_airspeed or request.airframe is None:
+            return request.vehicle
+        return replace(request.vehicle, airspeed=request.airframe.maximum_airspeed)
+
+
+@dataclass(slots=True, eq=False)
+class FoundRoute:
+    """A route: its points (n, 3), when it arrives [s since departure], what it costs, and what finding it took.
+
+    `airspeeds` (n - 1,) [m/s] of the legs where they are chosen, None where all are flown at the vehicle's.
+    """
+
+    points: FloatArray
+    arrival: float
+    cost: float = 0.0
+    graph_cost: float = 0.0
+    vertices: int = 1
+    expanded: int = 0
+    deferred: int = 0
+    search_seconds: float = 0.0
+    shaping_seconds: float = 0.0
+    airspeeds: FloatArray | None = None
+
+
+def power_of(request: Request, windy: WindyVeil, sites: FloatArray) -> PowerGrid | None:
+    """The vehicle's power between the lowest and the highest place of the veil; None where no airframe tells it.
+
+    Raises `RequestError` where a cost or free airspeeds ask for it.
+    """
+    airframe = request.airframe
+    if airframe is None:
+        if request.cost.name == "energy":
+            problem = Problem("energy asks for the vehicle's power: name its airframe in vehicle.airframe", "cost")
+            raise RequestError([request.locate(problem)])
+        return None
+    if request.vehicle.speed_model == "paper" and (request.cost.name == "energy" or request.free_airspeed):
+        problem = Problem("the paper's speed model has no airspeed to draw power at: `triangle`", "vehicle.speed_model")
+        raise RequestError([request.locate(problem)])
+    heights = np.concatenate([windy.points[:, 2], sites[:, 2]])
+    between = float(np.nanmin(heights)), float(np.nanmax(heights))
+    if request.free_airspeed:
+        airspeeds = airspeed_choices(airframe, sum(between) / 2)
+    else:
+        airspeeds = np.array([request.vehicle.airspeed])
+    return tabulate(airframe.power, request.vehicle, airspeeds, between)
+
+
+def find_route(
+    ready: Ready,
+    choice: CostChoice,
+    begin: float,
+    shaping: Callable[..., FloatArray] = shape,
+    worth: float = math.inf,
+) -> FoundRoute:
+    """The route by a cost that begins at `begin` [s since departure]. Raises `NoRouteError`.
+
+    By `time` a finite `worth` [W] weighs seconds against energy; all other costs ignore it.
+    """
+    found = FoundRoute(ready.sites[:1], begin)
+    for start, goal in pairwise(ready.sites):
+        cost = cost_between(ready, choice, start, goal, found.arrival, worth)
+        path = find_open_path(ready.windy, cost, start, goal, found.arrival)
+        since = time.perf_counter()
+        shaped = shaping(path.points, cost, ready.rules)
+        found.shaping_seconds += time.perf_counter() - since
+        found.search_seconds += path.seconds
+        found.expanded += path.expanded
+        found.deferred += path.deferred
+        found.vertices += len(path.points) - 1
+        prices, times = with_spare_of_limits(cost, 0.0).priced(shaped)
+        found.cost += float(np.sum(prices))
+        found.graph_cost += cost.of_polyline(path.points)
+        found.points = np.concatenate([found.points, shaped[1:]])
+        if not np.isfinite(times[-1]):
+            _refuse(ready, found.points, begin)
+        found.arrival = float(times[-1])
+    found.points = _without_hairs(found.points, ready.rules)
+    found.airspeeds = _airspeeds(ready, choice, found.points, begin, worth)
+    return found
+
+
+def cost_between(
+    ready: Ready, choice: CostChoice, start: FloatArray, goal: FloatArray, begin: float, worth: float = math.inf
+) -> LegCost:
+    """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
+    request = ready.request
+    straight = float(np.linalg.norm(goal - start))
+    edge = ready.windy.veil.edge_length
+    power = None
+    if choice.name == "energy":
+        power = ready.power
+    elif choice.name == "time" and ready.power is not None and math.isfinite(worth):
+        power = ready.power._replace(worth=worth)
+    return LegCost(
+        choice, request.wind, ready.vehicle, edge, straight, begin, request.members, request.robust, power=power,
+        corner=_CORNER if request.vehicle.hovers else 0.0,
+    )  # fmt: skip
+
+
+def unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
+    """The graph's path as it is: a shaping that shapes nothing."""
+    return points
+
+
+def _without_hairs(points: FloatArray, rules: Clearance) -> FloatArray:
+    """The polyline (n, 3) without one end of each leg shorter than a metre, where the legs that are left stay clear.
+
+    Shaping leaves such legs at vias that stand just at the clearance. A via is passed at less than a metre then, which
+    is half of an autopilot's acceptance radius.
+    """
+    i = 1
+    while i < len(points) - 2:
+        if np.linalg.norm(points[i + 1] - points[i]) < _HAIR:
+            for gone in (i, i + 1):
+                left = np.delete(points, gone, axis=0)
+                around = slice(gone - 1, gone), slice(gone, gone + 1)
+                if not rules.breaches(left[around[0]], left[around[1]])[0]:
+                    points = left
+                    break
+        i += 1
+    return points
+
+
+def _airspeeds(ready: Ready, choice: CostChoice, points: FloatArray, begin: float, worth: float) -> FloatArray | None:
+    """The airspeed of each leg where it is free: the fastest for least time alone, else of least energy and worth."""
+    request = ready.request
+    if not request.free_airspeed or request.airframe is None or ready.power is None:
+        return None
+    slowest, fastest = float(ready.power.airspeeds[0]), float(ready.power.airspeeds[-1])
+    if choice.name == "time" and math.isinf(worth):
+        return np.full(len(points) - 1, fastest)
+    value = worth if choice.name == "time" else 0.0
+    return best_airspeeds(
+        points, ready.asked.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
+    )
+
+
+def _refuse(ready: Ready, points: FloatArray, begin: float) -> NoReturn:
+    """Raise `NoRouteError` for a route (n, 3) on which the wind, looked at closely, is worse than at the nodes."""
+    request = ready.flown
+    fly(points, request.frame, request.terrain, request.wind, ready.vehicle, begin)  # says on which leg, if on one
+    raise NoRouteError(
+        "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"
+        " closely: a finer graph, more airspeed, another departure, or a lower `robust`.",
+        {"wind": 1},
+    )

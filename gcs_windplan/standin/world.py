@@ -1,0 +1,77 @@
+"""Where the stand-in flies: its local frame, wind and ground, and where it stands at first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gcs_windplan.errors import InputError, TerrainError
+from gcs_windplan.geo.frame import GeoPoint, LocalFrame
+from gcs_windplan.mission import Home
+from gcs_windplan.vehicle import Autopilot
+from gcs_windplan.wind.analytic import Calm
+from gcs_windplan.wind.field import WindField
+
+if TYPE_CHECKING:
+    from gcs_windplan.planning.request import Request
+    from gcs_windplan.terrain import Terrain
+
+#: Where the autopilots' own simulators stand: ArduPilot's CMAC (locations.txt), PX4's Zurich (px4_sitl).
+SIMULATOR_HOMES = {
+    "ardupilot": Home(GeoPoint(-35.363262, 149.165237), 584.0),
+    "px4": Home(GeoPoint(47.397742, 8.545594), 488.0),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class World:
+    """The surroundings of a stand-in.
+
+    Wind and terrain are in the local `frame`. Without terrain the ground is level, at home's height. A world that is
+    not `settled` may be left for the place where the first mission begins. `departure` is the time of take-off.
+    """
+
+    home: Home
+    frame: LocalFrame
+    wind: WindField = field(default_factory=Calm)
+    terrain: Terrain | None = None
+    settled: bool = True
+    departure: datetime | None = None
+
+    def ground(self, east: float, north: float) -> float | None:
+        """The ground's height AMSL [m] at a place; None where no terrain tells it."""
+        if self.terrain is None:
+            return None
+        try:
+            height = float(self.terrain.heights_at(np.array([[east, north]]))[0])
+        except TerrainError:
+            return None
+        return height if np.isfinite(height) else None
+
+
+def world_at(home: Home, wind: WindField | None = None) -> World:
+    """A level world around a home."""
+    return World(home, LocalFrame(home.point), wind if wind is not None else Calm())
+
+
+def simulator_world(autopilot: Autopilot, wind: WindField | None = None) -> World:
+    """A level world that is left for the place of the first mission that comes."""
+    home = SIMULATOR_HOMES[autopilot]
+    return World(home, LocalFrame(home.point), wind if wind is not None else Calm(), settled=False)
+
+
+def planned_world(request: Request, home: Home | None = None, wind: WindField | None = None) -> World:
+    """The world of a mission file: its wind and terrain, home on the ground at its start."""
+    frame, terrain = request.frame, request.terrain
+    if home is None:
+        start = request.start
+        place = np.array([[start.east, start.north]])
+        height = float(terrain.heights_at(place)[0])
+        if not np.isfinite(height):
+            raise InputError("the ground at the mission's start is not known: give --home with an altitude")
+        latitude, longitude = frame.to_geographic(place)
+        home = Home(GeoPoint(float(latitude[0]), float(longitude[0])), height)
+    return World(home, frame, wind if wind is not None else request.wind, terrain, departure=request.departure)
