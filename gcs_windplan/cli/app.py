@@ -16,6 +16,7 @@ from gcs_windplan.cli import (
     compare,
     departures,
     diff,
+    help,
     linking,
     plan,
     pull,
@@ -53,6 +54,7 @@ app.command("wind", help=wind.HELP, epilog=_EPILOG)(wind.wind)
 app.command("review", help=review.HELP, epilog=review.EPILOG)(review.review)
 app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
 app.command("schema", help=schema.HELP)(schema.schema)
+app.command("help", help=help.HELP)(help.help)
 
 
 def _print_version(wanted: bool) -> None:

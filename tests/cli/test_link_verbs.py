@@ -29,6 +29,7 @@ from .test_cli import GOOD
 
 AT_ONCE = ("--sysid", 1, "--compid", 1)  # named, so that it need not listen for others
 CODE = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
+ONCE_IT_BEGINS = CODE.replace("main()", "print('begins', flush=True); main()")
 
 
 def command(*arguments) -> list[str]:
@@ -426,10 +427,9 @@ def test_ctrl_c(kind: type[Autopilot], number: int, waypoints: Path):
 @pytest.mark.parametrize("delay", [0.0, 0.15, 0.4, 0.8])
 def test_an_early_ctrl_c_ends_in_one_line(waypoints: Path, delay: float, number: int):
     """While modules are loaded, and while a vehicle is waited for."""
-    code = CODE.replace("main()", "print('begins', flush=True); main()")
     arguments = ["push", str(waypoints), "--to", udpin(free_port()), "--json"]
     process = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", ONCE_IT_BEGINS, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     assert process.stdout.readline() == "begins\n"
@@ -450,9 +450,12 @@ def test_an_early_ctrl_c_ends_in_one_line(waypoints: Path, delay: float, number:
 @pytest.mark.parametrize("delay", [0.05, 1.5])
 def test_a_vehicle_that_is_ended(delay: float, number: int):
     process = subprocess.Popen(
-        command("vehicle", "--listen", udpin(free_port())), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    time.sleep(delay + 0.3)
+        [sys.executable, "-c", ONCE_IT_BEGINS, "vehicle", "--listen", udpin(free_port())],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begins\n"
+    time.sleep(delay)
     process.send_signal(number)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 0

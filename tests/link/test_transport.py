@@ -87,9 +87,12 @@ def test_udpout_bears_that_nobody_listens(opened):
 
 def test_waiting_ends(opened):
     listening = opened(f"udpin:127.0.0.1:{free_port()}")
-    start = time.monotonic()
-    assert listening.receive(0.1) == b""
-    assert 0.09 < time.monotonic() - start < 2
+    took = []
+    for _ in range(5):  # a busy machine may stop us in one of them
+        start = time.monotonic()
+        assert listening.receive(0.1) == b""
+        took.append(time.monotonic() - start)
+    assert 0.09 < min(took) < 2
     assert listening.receive(0.0) == b""
 
 
