@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import version
@@ -16,6 +15,7 @@ from markupsafe import Markup
 
 from gcs_windplan.assessment import Assessment, Finding
 from gcs_windplan.errors import InputError
+from gcs_windplan.json_text import json_text
 from gcs_windplan.report import words
 from gcs_windplan.report.figures import changes, figures, gain
 from gcs_windplan.report.places import place_of
@@ -80,7 +80,7 @@ def _finding(letter: str, i: int, assessment: Assessment, finding: Finding) -> d
 
 def _json(value: Any) -> Markup:
     """JSON that can stand inside a script element: nothing in it ends the element or begins a comment."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    text = json_text(value, indent=None)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
