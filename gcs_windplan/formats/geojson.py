@@ -17,7 +17,7 @@ import numpy as np
 from gcs_windplan.json_text import json_text, json_value
 
 if TYPE_CHECKING:
-    from gcs_windplan.assessment import Assessment, Finding, JudgedLeg, Outline, Stop
+    from gcs_windplan.assessment import AssessedLeg, Assessment, Finding, Outline, Stop
 
 _DIGITS, _CENTIMETRES = 7, 2
 _OVER_POLE: Final = 179.9  # [deg] of longitude between two neighbours: their straight line leads over the pole
@@ -46,7 +46,7 @@ def on_earth(longitude: float, latitude: float) -> tuple[float, float]:
     return (longitude + 180) % 360 - 180 if abs(longitude) > 180 else longitude, latitude
 
 
-def _leg(leg: JudgedLeg, assessment: Assessment) -> dict[str, Any]:
+def _leg(leg: AssessedLeg, assessment: Assessment) -> dict[str, Any]:
     """A leg as flown, a curve with its samples."""
     profile = assessment.profile
     inside = np.flatnonzero(profile.leg == leg.number)
@@ -110,6 +110,7 @@ def _stop(stop: Stop, assessment: Assessment) -> dict[str, Any]:
 
 def _finding(finding: Finding) -> dict[str, Any]:
     figures = json_value(finding)
+    del figures["facts"]  # properties are flat
     if finding.latitude_deg is None or finding.longitude_deg is None:
         return _feature("finding", None, figures)
     return _feature("finding", _point(finding.longitude_deg, finding.latitude_deg), figures)

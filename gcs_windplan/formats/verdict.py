@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def format_verdict(assessments: Sequence[Assessment], written: Sequence[Path] = (), code: int = 0) -> str:
-    """One object: a verdict for each mission with its findings, sums, stops and legs; SI units, angles in degrees.
+    """One object: a verdict for each mission with its findings, totals (`sums`), stops and legs.
 
-    null for what is not known, or infinite: a time or an energy of what cannot be flown.
+    SI units, angles in degrees, null for what is not known, or infinite: a time or an energy of what cannot be flown.
     """
     document = {
         "verb": "review",
@@ -28,7 +28,7 @@ def format_verdict(assessments: Sequence[Assessment], written: Sequence[Path] = 
 
 def _mission(assessment: Assessment) -> dict[str, Any]:
     names = (
-        "name", "verdict", "autopilot", "vehicle_type", "vertical_datum", "departure", "findings", "limits", "sums",
-        "stops", "legs", "sources", "remarks",
+        "name", "verdict", "autopilot", "vehicle_type", "vertical_datum", "departure", "findings", "limits", "stops",
+        "legs", "sources", "remarks",
     )  # fmt: skip
-    return {name: getattr(assessment, name) for name in names}
+    return {**{name: getattr(assessment, name) for name in names}, "sums": assessment.totals}

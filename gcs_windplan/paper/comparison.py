@@ -9,6 +9,7 @@ from gcs_windplan.paper.cases import CASES, NEAR_THE_DIGITS, OTHER_READINGS, Cas
 from gcs_windplan.paper.flying import SHAPED, Route, fly_case, seconds_on_the_slope, sites_of
 from gcs_windplan.paper.graphs import lay_roadmap, lay_uniform
 from gcs_windplan.paper.published import ANGLE, COSTS, DISTANCE, HYBRID, TABLE_1, TABLE_2, TIME, printed_seconds
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.paper.tables import Table, in_seconds
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.veil import PrmVeil
@@ -30,7 +31,7 @@ class Setup:
 
 def fly_setups(terrain: Dem) -> tuple[Setup, ...]:
     """The main setup first (uniform, exact test, the paper's speeds); then one thing changed at a time."""
-    exact, sampled = make_rules(terrain), make_rules(terrain, "paper")
+    exact, sampled = make_rules(terrain), make_rules(terrain, SampledTest())
     cases = (*CASES, *OTHER_READINGS, *NEAR_THE_DIGITS)
     sites = sites_of(exact, CASES)
     uniform = lay_uniform(exact, sites)

@@ -11,6 +11,7 @@ from gcs_windplan.paper.flying import sites_of
 from gcs_windplan.paper.frequency import APART, PLACES, Trial, defeats, in_short
 from gcs_windplan.paper.graphs import EIGHT, ROADMAP, SEED, SPACING, lay_uniform
 from gcs_windplan.paper.published import PAPER
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.paper.tables import Table
 from gcs_windplan.terrain import Dem
 
@@ -99,7 +100,7 @@ def _choices(terrain: Dem) -> str:
     uniform = lay_uniform(rules, sites_of(rules, CASES))
     starts, ends = uniform.points[uniform.pairs[:, 0]], uniform.points[uniform.pairs[:, 1]]
     exact = uniform.flags != 0
-    sampled = make_rules(terrain, "paper").breaches(starts, ends) != 0
+    sampled = make_rules(terrain, SampledTest()).breaches(starts, ends) != 0
     ways = "; ".join(key_of(case) for case in CASES)
     return f"""\
 ## Choices

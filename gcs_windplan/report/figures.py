@@ -1,4 +1,4 @@
-"""A mission's sums as figures to read, against their limits, and the differences of two missions."""
+"""A mission's totals as figures to read, against their limits, and the differences of two missions."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ class Change:
 
 
 def figures(assessment: Assessment) -> list[Figure]:
-    """The sums of a mission."""
-    sums = assessment.sums
-    climb, descent = words.number(sums.climb), words.number(sums.descent)
+    """The totals of a mission."""
+    totals = assessment.totals
+    climb, descent = words.number(totals.climb), words.number(totals.descent)
     listed = [
         Figure(
-            "Time", words.clock(sums.seconds), "min",
-            f"take-off {words.clock(sums.takeoff_seconds)} and landing {words.clock(sums.landing_seconds)} counted",
-            not math.isfinite(sums.seconds), sums.seconds, "less", words.clock_difference,
+            "Time", words.clock(totals.seconds), "min",
+            f"take-off {words.clock(totals.takeoff_seconds)} and landing {words.clock(totals.landing_seconds)} counted",
+            not math.isfinite(totals.seconds), totals.seconds, "less", words.clock_difference,
         ),
-        _figure("Length", sums.length / 1000, "km", 2, f"climbs {climb} m, descends {descent} m"),
+        _figure("Length", totals.length / 1000, "km", 2, f"climbs {climb} m, descends {descent} m"),
     ]  # fmt: skip
     return [*listed, *_battery(assessment), *_heights(assessment), *_winds(assessment)]
 
@@ -70,15 +70,15 @@ def _figure(
 
 def _battery(assessment: Assessment) -> list[Figure]:
     """Energy and what is left, where the airframe is known."""
-    sums = assessment.sums
-    if sums.energy is None:
+    totals = assessment.totals
+    if totals.energy is None:
         return [Figure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
-    energy = _figure("Energy", words.watt_hours(sums.energy), "Wh", 0, "take-off and landing counted", good="less")
+    energy = _figure("Energy", words.watt_hours(totals.energy), "Wh", 0, "take-off and landing counted", good="less")
     broken = _found(assessment, "reserve", "battery", "reserve-time")
-    note = "" if sums.reserve is None else f"reserve {words.percent(sums.reserve)} %"
+    note = "" if totals.reserve is None else f"reserve {words.percent(totals.reserve)} %"
     left = Figure(
-        "Battery left", words.percent(sums.left), "%", note, broken,
-        None if sums.left is None else sums.left * 100, "more",
+        "Battery left", words.percent(totals.left), "%", note, broken,
+        None if totals.left is None else totals.left * 100, "more",
         lambda change: words.number(change, 1, sign=True) + " points", relative=False,
     )  # fmt: skip
     return [energy, left]
@@ -86,22 +86,24 @@ def _battery(assessment: Assessment) -> list[Figure]:
 
 def _heights(assessment: Assessment) -> list[Figure]:
     """The smallest and the largest height above ground."""
-    sums, limits = assessment.sums, assessment.limits
+    totals, limits = assessment.totals, assessment.limits
     low, high = _found(assessment, "clearance", "terrain"), _found(assessment, "height")
     return [
-        _figure("Smallest clearance", sums.clearance, "m", 1, _limit("at least", limits.clearance, "m"), low),
-        _figure("Largest height", sums.height, "m", 1, _limit("at most", limits.max_height, "m", "above ground"), high),
+        _figure("Smallest clearance", totals.clearance, "m", 1, _limit("at least", limits.clearance, "m"), low),
+        _figure(
+            "Largest height", totals.height, "m", 1, _limit("at most", limits.max_height, "m", "above ground"), high
+        ),
     ]
 
 
 def _winds(assessment: Assessment) -> list[Figure]:
     """The strongest wind and gust met."""
-    sums, limits = assessment.sums, assessment.limits
+    totals, limits = assessment.totals, assessment.limits
     strong = _found(assessment, "wind")
-    listed = [_figure("Strongest wind", sums.wind, "m/s", 1, _limit("at most", limits.wind, "m/s"), strong)]
-    if sums.gust is not None:
+    listed = [_figure("Strongest wind", totals.wind, "m/s", 1, _limit("at most", limits.wind, "m/s"), strong)]
+    if totals.gust is not None:
         strong = _found(assessment, "gust")
-        listed.append(_figure("Strongest gust", sums.gust, "m/s", 1, _limit("at most", limits.gust, "m/s"), strong))
+        listed.append(_figure("Strongest gust", totals.gust, "m/s", 1, _limit("at most", limits.gust, "m/s"), strong))
     return listed
 
 
@@ -137,10 +139,10 @@ def _change(first: Figure, second: Figure) -> Change:
 def gain(first: Assessment, second: Assessment) -> str:
     """What the second mission gains over the first in time and energy, a sentence."""
     parts = []
-    a, b = first.sums.seconds, second.sums.seconds
+    a, b = first.totals.seconds, second.totals.seconds
     if math.isfinite(a) and math.isfinite(b) and a > 0:
         parts.append(_gained("time", f"{words.clock(abs(b - a))} min", (b - a) / a))
-    a, b = first.sums.energy or math.nan, second.sums.energy or math.nan
+    a, b = first.totals.energy or math.nan, second.totals.energy or math.nan
     if math.isfinite(a) and math.isfinite(b):
         parts.append(_gained("energy", f"{words.number(words.watt_hours(abs(b - a)), 1)} Wh", (b - a) / a))
     return f"B takes {' and '.join(parts)} {'than' if '%' in parts[-1] else 'as'} A." if parts else ""

@@ -52,7 +52,7 @@ def draw_assessment_map(assessments: Sequence[Assessment], dpi: int = 120) -> by
         sheet.draw_circles(axes, stops)
     else:
         beside.remove()
-        names = [f"{one.name}: {words.clock(one.sums.seconds)} min" for one in assessments]
+        names = [f"{one.name}: {words.clock(one.totals.seconds)} min" for one in assessments]
         sheet.draw_side_by_side(axes, lines, names)
     sheet.dress(axes, extent, " and ".join(_title(one) for one in assessments))
     room = Room(axes)
@@ -137,4 +137,4 @@ def _draw_speeds(axes: Any, assessment: Assessment) -> None:
 
 def _title(assessment: Assessment) -> str:
     found = words.counts(assessment.findings) or "nothing found"
-    return f"{assessment.name}: {words.number(assessment.sums.length / 1000, 2)} km, {found}"
+    return f"{assessment.name}: {words.number(assessment.totals.length / 1000, 2)} km, {found}"

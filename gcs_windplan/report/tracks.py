@@ -65,7 +65,7 @@ def _mission(assessment: Assessment, frame: LocalFrame) -> Numbers:
         "findings": _findings(assessment, frame),
         "clearance": limits.clearance,
         "maxHeight": limits.max_height,
-        "reserve": None if assessment.sums.reserve is None else rounded_number(100 * assessment.sums.reserve, 1),
+        "reserve": None if assessment.totals.reserve is None else rounded_number(100 * assessment.totals.reserve, 1),
     }
 
 

@@ -54,7 +54,7 @@ def test_clearance_over_a_ridge():
     assert local(finding) == pytest.approx([1000, 0], abs=one_centimetre)
     assert finding.distance == pytest.approx(1000, abs=one_centimetre)
     assert "raise it there by 10 m" in finding.message
-    assert review.sums.clearance == pytest.approx(20, abs=one_millimetre)
+    assert review.totals.clearance == pytest.approx(20, abs=one_millimetre)
     assert found(judged(at(2000, 0), terrain=ridge(), limits=Limits(clearance=20)), "clearance") == []
 
 
@@ -110,7 +110,7 @@ def test_ground_that_is_not_known():
     assert leaving.value == pytest.approx(1500, abs=one_metre)
     assert "by 1500.0 m" in leaving.message
     assert math.isnan(review.legs[1].clearance)
-    assert review.sums.clearance == pytest.approx(80)
+    assert review.totals.clearance == pytest.approx(80)
 
 
 def test_a_gap_in_the_ground():
@@ -256,7 +256,7 @@ def test_wind_and_gusts_beyond_their_limits():
     review = judged(at(0, 900), wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=Limits(wind=9, gust=12))
     wind, gust = found(review, "wind")[0], found(review, "gust")[0]
     assert (wind.value, gust.value) == pytest.approx((10, 14))
-    assert (review.sums.wind, review.sums.gust) == pytest.approx((10, 14))
+    assert (review.totals.wind, review.totals.gust) == pytest.approx((10, 14))
     still = Limits(wind=10, gust=14)
     kept = judged(at(0, 900), RETURN, wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=still)
     assert kept.verdict == "clear"
@@ -268,7 +268,7 @@ def test_legs_in_a_row_make_one_finding_where_it_is_worst():
                     limits=Limits(wind=10))  # fmt: skip
     (finding,) = found(review, "wind")
     assert finding.leg in (3, 4)
-    assert finding.value == pytest.approx(review.sums.wind)
+    assert finding.value == pytest.approx(review.totals.wind)
     assert finding.value == pytest.approx(16, abs=0.5)
     assert finding.message.startswith(f"legs 2 to 4 meet, at worst on leg {finding.leg} (to item {finding.leg + 1}),")
 
@@ -287,7 +287,7 @@ def test_members_are_looked_at_one_by_one():
         (finding,) = found(review, "wind")
         assert (finding.severity, finding.value) == (severity, pytest.approx(14))
         assert f"in the strongest of 4 members, {count} of which" in finding.message
-        assert review.sums.wind == pytest.approx(14)
+        assert review.totals.wind == pytest.approx(14)
         assert found(review, "flyable") == []
         assert "mean wind of 4 members" in " ".join(review.remarks)
     for members, severity in (((2, 2, 2, 25), "warning"), ((2, 2, 25, 25), "danger")):
@@ -332,7 +332,7 @@ def test_wind_that_is_not_known():
     assert "above the highest level" in high.message
     assert north.distance == pytest.approx(1000, abs=30)
     assert all(one.severity == "danger" for one in (north, back, high))
-    assert math.isfinite(review.sums.seconds)
+    assert math.isfinite(review.totals.seconds)
     known = np.isfinite(review.profile.wind_east)
     assert known.any()
     assert not known.all()
@@ -384,7 +384,10 @@ def test_a_landing_at_another_height_than_the_ground():
 
 def test_a_mission_without_an_end():
     back, unlimited = free(Command.DO_JUMP, 2, -1), at(0, 500, command=Command.NAV_LOITER_UNLIM)
-    for last, words in ((back, "item 4, DO_JUMP for ever"), (unlimited, "item 4, NAV_LOITER_UNLIM")):
+    for last, words in (
+        (back, "item 4, DO_JUMP, repeats indefinitely"),
+        (unlimited, "item 4, NAV_LOITER_UNLIM, loiters indefinitely"),
+    ):
         for kind in ("multicopter", "fixed-wing"):
             review = judged(at(0, 300), at(0, 500), last, mission={"vehicle_type": kind})
             (finding,) = found(review, "endless")
@@ -431,9 +434,9 @@ def test_the_reserve_and_the_limit():
     frame = airframe(watts=400, capacity=250_000)
     review = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=frame, limits=Limits(battery=0.5))
     (reserve,), (limit,) = found(review, "reserve"), found(review, "battery")
-    assert reserve.value == limit.value == pytest.approx(100 * review.sums.left)
+    assert reserve.value == limit.value == pytest.approx(100 * review.totals.left)
     assert (reserve.limit, limit.limit) == pytest.approx((40, 50))
-    assert review.sums.reserve == pytest.approx(0.5)
+    assert review.totals.reserve == pytest.approx(0.5)
     assert review.stops[limit.leg].left < 0.5 <= review.stops[limit.leg - 1].left
     large = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=airframe(capacity=2_500_000))
     assert found(large, "reserve") == []
@@ -445,9 +448,9 @@ def test_circles_take_from_the_battery():
     frame = airframe(capacity=1_000_000)
     turned, passed = (judged(item, RETURN, airframe=frame) for item in (turns, replace(turns, params=(0.0,) * 4)))
     seconds = 10 * 2 * math.pi * 50 / math.sqrt(0.5 * 2.5 * 50)
-    assert turned.sums.seconds - passed.sums.seconds == pytest.approx(seconds, abs=0.01)
+    assert turned.totals.seconds - passed.totals.seconds == pytest.approx(seconds, abs=0.01)
     watts = float(frame.power.watts(7.9, 0.0, air_density(GROUND + 80)))
-    assert turned.sums.energy - passed.sums.energy == pytest.approx(watts * seconds, rel=1e-6)
+    assert turned.totals.energy - passed.totals.energy == pytest.approx(watts * seconds, rel=1e-6)
     assert turned.stops[1].hold == pytest.approx(seconds)
 
 
@@ -491,7 +494,7 @@ def test_a_reserve_in_time():
     frame = airframe(watts=400, capacity=1_000_000)
     review = judged(at(0, 900), airframe=frame, limits=Limits(reserve_seconds=600.0))
     watts = float(frame.power.watts(15.0, 0.0, air_density(GROUND + 80)))
-    assert review.sums.reserve == pytest.approx(0.2 + 600 * watts / 1_000_000)
+    assert review.totals.reserve == pytest.approx(0.2 + 600 * watts / 1_000_000)
     strict = judged(at(0, 900), airframe=frame, limits=Limits(reserve_seconds=1900.0))
     (finding,) = found(strict, "reserve-time")
     assert "31.6667 min" in finding.message

@@ -1,4 +1,4 @@
-"""Judged missions as PNG."""
+"""AssessedMission missions as PNG."""
 
 from __future__ import annotations
 
