@@ -3,9 +3,9 @@
 from gcs_windplan.assessment.assessment import (
     AssessedLeg,
     Assessment,
+    AssessmentLimits,
     Finding,
     GroundMap,
-    Limits,
     MissionTotals,
     Outline,
     Profile,
@@ -21,10 +21,10 @@ from gcs_windplan.assessment.planned import assess_plan, case_of
 __all__ = [
     "AssessedLeg",
     "Assessment",
+    "AssessmentLimits",
     "Case",
     "Finding",
     "GroundMap",
-    "Limits",
     "MissionTotals",
     "Outline",
     "Profile",

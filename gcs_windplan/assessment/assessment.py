@@ -159,7 +159,7 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class AssessmentLimits:
     """What a mission is judged against; None: no such limit. Heights above ground and lengths [m], speeds [m/s].
 
     `battery` is the smallest share of the capacity that must be left at the end, `reserve_seconds` of level flight must
@@ -234,7 +234,7 @@ class Assessment:
     legs: tuple[AssessedLeg, ...]
     profile: Profile
     totals: MissionTotals
-    limits: Limits
+    limits: AssessmentLimits
     findings: tuple[Finding, ...]
     ground: GroundMap
     outlines: tuple[Outline, ...] = ()

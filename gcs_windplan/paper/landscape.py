@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.paper.cases import AREA, CASES, CELL, HILLS, Case, make_rules
+from gcs_windplan.paper.cases import AREA, CASES, CELL, HILLS, PaperCase, make_rules
 from gcs_windplan.paper.flying import sites_of
 from gcs_windplan.paper.graphs import lay_roadmap, lay_uniform
 from gcs_windplan.report.png import png_bytes
@@ -64,7 +64,7 @@ def _triangles(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
     return both.reshape(-1, 3, 3)
 
 
-def _draw_sites(axes: Any, terrain: Dem, case: Case) -> None:
+def _draw_sites(axes: Any, terrain: Dem, case: PaperCase) -> None:
     """Start and goal as pins with their names."""
     for place, word, colour in ((case.start, "start", _START), (case.goal, "goal", _GOAL)):
         ground = float(terrain.heights_at(np.array([place]))[0])

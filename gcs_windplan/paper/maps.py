@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gcs_windplan.paper.cases import AREA, CASES, VEIL_HEIGHT, Case
+from gcs_windplan.paper.cases import AREA, CASES, VEIL_HEIGHT, PaperCase
 from gcs_windplan.paper.comparison import Setup, key_of
 from gcs_windplan.paper.flying import SHAPED, Route
 from gcs_windplan.paper.published import ANGLE, DISTANCE
@@ -88,7 +88,7 @@ def _new_panels(columns: int) -> tuple[Figure, list[Any]]:
     return figure, panels
 
 
-def _draw_panel(axes: Any, terrain: Dem, case: Case, routes: Mapping[str, Route], lines: Sequence[Line]) -> None:
+def _draw_panel(axes: Any, terrain: Dem, case: PaperCase, routes: Mapping[str, Route], lines: Sequence[Line]) -> None:
     """One case: relief, wind, routes, start and goal, and the times below."""
     axes.set(xlim=(AREA.west - _RIM, AREA.east + _RIM), ylim=(AREA.south - _RIM, AREA.north + _RIM), aspect="equal")
     heights, _, _ = terrain.raster(AREA, _RAISED)
@@ -105,7 +105,7 @@ def _draw_panel(axes: Any, terrain: Dem, case: Case, routes: Mapping[str, Route]
     axes.set_yticks(range(-2, 3))
 
 
-def _wind_of(case: Case) -> WindArrows:
+def _wind_of(case: PaperCase) -> WindArrows:
     """The field on a grid at the veil's height."""
     side = np.linspace(-2, 2, 2 * _ARROWS + 1)[1::2]
     places = np.column_stack([axis.ravel() for axis in np.meshgrid(side, side)])

@@ -16,7 +16,7 @@ Good = Literal["less", "more", ""]
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class KeyFigure:
     """One figure: what it is, its text and unit, what it is measured against, and whether it breaks that.
 
     `value` and `show_change` are for the difference to another mission's figure; `good` says which way is better.
@@ -37,19 +37,19 @@ class Figure:
 class Change:
     """One figure of two missions, side by side, and the second's difference to the first."""
 
-    first: Figure
-    second: Figure
+    first: KeyFigure
+    second: KeyFigure
     text: str
     percent: str
     judgement: Literal["better", "worse", ""]
 
 
-def figures(assessment: Assessment) -> list[Figure]:
+def figures(assessment: Assessment) -> list[KeyFigure]:
     """The totals of a mission."""
     totals = assessment.totals
     climb, descent = words.number(totals.climb), words.number(totals.descent)
     listed = [
-        Figure(
+        KeyFigure(
             "Time", words.clock(totals.seconds), "min",
             f"take-off {words.clock(totals.takeoff_seconds)} and landing {words.clock(totals.landing_seconds)} counted",
             not math.isfinite(totals.seconds), totals.seconds, "less", words.clock_difference,
@@ -61,22 +61,22 @@ def figures(assessment: Assessment) -> list[Figure]:
 
 def _figure(
     label: str, value: float | None, unit: str, digits: int, note: str = "", broken: bool = False, good: Good = ""
-) -> Figure:
+) -> KeyFigure:
     def show_change(change: float) -> str:
         return f"{words.number(change, digits, sign=True)} {unit}"
 
-    return Figure(label, words.number(value, digits), unit, note, broken, value, good, show_change)
+    return KeyFigure(label, words.number(value, digits), unit, note, broken, value, good, show_change)
 
 
-def _battery(assessment: Assessment) -> list[Figure]:
+def _battery(assessment: Assessment) -> list[KeyFigure]:
     """Energy and what is left, where the airframe is known."""
     totals = assessment.totals
     if totals.energy is None:
-        return [Figure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
+        return [KeyFigure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
     energy = _figure("Energy", words.watt_hours(totals.energy), "Wh", 0, "take-off and landing counted", good="less")
     broken = _found(assessment, "reserve", "battery", "reserve-time")
     note = "" if totals.reserve is None else f"reserve {words.percent(totals.reserve)} %"
-    left = Figure(
+    left = KeyFigure(
         "Battery left", words.percent(totals.left), "%", note, broken,
         None if totals.left is None else totals.left * 100, "more",
         lambda change: words.number(change, 1, sign=True) + " points", relative=False,
@@ -84,7 +84,7 @@ def _battery(assessment: Assessment) -> list[Figure]:
     return [energy, left]
 
 
-def _heights(assessment: Assessment) -> list[Figure]:
+def _heights(assessment: Assessment) -> list[KeyFigure]:
     """The smallest and the largest height above ground."""
     totals, limits = assessment.totals, assessment.limits
     low, high = _found(assessment, "clearance", "terrain"), _found(assessment, "height")
@@ -96,7 +96,7 @@ def _heights(assessment: Assessment) -> list[Figure]:
     ]
 
 
-def _winds(assessment: Assessment) -> list[Figure]:
+def _winds(assessment: Assessment) -> list[KeyFigure]:
     """The strongest wind and gust met."""
     totals, limits = assessment.totals, assessment.limits
     strong = _found(assessment, "wind")
@@ -120,11 +120,11 @@ def changes(first: Assessment, second: Assessment) -> list[Change]:
     """The figures of two missions side by side."""
     mine, yours = ({figure.label: figure for figure in figures(one)} for one in (first, second))
     labels = [*mine, *(label for label in yours if label not in mine)]
-    missing = {label: Figure(label, words.NOTHING, "") for label in labels}
+    missing = {label: KeyFigure(label, words.NOTHING, "") for label in labels}
     return [_change(mine.get(label, missing[label]), yours.get(label, missing[label])) for label in labels]
 
 
-def _change(first: Figure, second: Figure) -> Change:
+def _change(first: KeyFigure, second: KeyFigure) -> Change:
     a, b = first.value, second.value
     if a is None or b is None or not math.isfinite(a) or not math.isfinite(b) or first.show_change is None:
         return Change(first, second, words.NOTHING, words.NOTHING, "")

@@ -19,7 +19,7 @@ from gcs_windplan.json_text import json_text
 from gcs_windplan.report import words
 from gcs_windplan.report.figures import changes, figures, gain
 from gcs_windplan.report.places import place_of
-from gcs_windplan.report.three import Library, script_hash, three_js
+from gcs_windplan.report.three import Script, script_hash, three_js
 from gcs_windplan.report.tracks import page_numbers
 
 _SCRIPTS = ("drawing.js", "charts.js", "map.js", "scene.js", "page.js")
@@ -103,7 +103,7 @@ def _dress() -> dict[str, Any]:
     }
 
 
-def _policy(style: str, script: str, library: Library | None) -> Markup:
+def _policy(style: str, script: str, library: Script | None) -> Markup:
     """Nothing from anywhere: only pictures within the page, and the style and scripts that hash to what was written."""
     scripts = [script_hash(script.encode("utf-8"))] + ([library.hash] if library else [])
     styles = "sha256-" + base64.b64encode(hashlib.sha256(style.encode("utf-8")).digest()).decode("ascii")

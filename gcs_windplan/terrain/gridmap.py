@@ -83,7 +83,7 @@ class GridMap:
     def fitted(cls, chain: Chain, extent: Extent, name: str) -> GridMap:
         """The lowest degree that follows `chain`, (n, 2) to (n, 2), to 1 cm inside of `extent`.
 
-        AssessedMission at places that took no part in the fit. Raises TerrainError if degree 6 does not do.
+        Judged at places that took no part in the fit. Raises TerrainError if degree 6 does not do.
         """
         rng = np.random.default_rng(1)
         knots = np.cos(np.pi * (np.arange(16) + 0.5) / 16)  # Chebyshev's: no runaway at the rim

@@ -10,9 +10,9 @@ import numpy as np
 from gcs_windplan.assessment import (
     AssessedLeg,
     Assessment,
+    AssessmentLimits,
     Finding,
     GroundMap,
-    Limits,
     MissionTotals,
     Outline,
     Profile,
@@ -108,7 +108,7 @@ def assessment(name: str = "over the ridge", stops: int = 9, above: float = 70.0
     square = np.array([[-800.0, -1400.0], [300.0, -1500.0], [200.0, -700.0], [-700.0, -600.0]])
     return Assessment(
         name, "ardupilot", "multicopter", FRAME, "EGM2008", datetime(2026, 5, 1, 9, tzinfo=UTC), listed, legs, profile,
-        totals, Limits(clearance=30.0, max_height=120.0, wind=12.0, battery=0.25), findings, ground_map(),
+        totals, AssessmentLimits(clearance=30.0, max_height=120.0, wind=12.0, battery=0.25), findings, ground_map(),
         (Outline("reserve", "keep-out", square, ceiling=1500.0), Outline("all", "fence-in", 2.2 * square + 300)),
         ((46.795, 9.79),),
         (
@@ -123,7 +123,7 @@ def clear() -> Assessment:
     """A mission without findings, energy, power, wind or gusts known."""
     made = assessment("quiet", stops=4)
     return replace(
-        made, findings=(), outlines=(), rally=(), sources=(), remarks=(), departure=None, limits=Limits(),
+        made, findings=(), outlines=(), rally=(), sources=(), remarks=(), departure=None, limits=AssessmentLimits(),
         profile=replace(made.profile, power=None, left=None),
         totals=replace(made.totals, energy=None, left=None, reserve=None, gust=None),
         ground=replace(made.ground, wind_places=np.zeros((0, 2)), winds=np.zeros((0, 2))),

@@ -19,7 +19,7 @@ from gcs_windplan.assessment import Assessment, Finding, Source, assess_plan
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.report import page, render_page, words
-from gcs_windplan.report.places import Place, place_of
+from gcs_windplan.report.places import FindingPlace, place_of
 from tests.report import made
 
 MEGABYTE = 1_000_000
@@ -113,7 +113,7 @@ def test_a_finding_of_an_item_lies_at_its_stop() -> None:
     mission = made.assessment()
     finding = Finding("speed", "warning", "too fast", item=3)
     assert place_of(mission, finding).distance == mission.stops[3].distance
-    assert place_of(mission, Finding("speed", "warning", "too fast")) == Place()
+    assert place_of(mission, Finding("speed", "warning", "too fast")) == FindingPlace()
 
 
 def test_tables_have_captions_and_scopes(one: str) -> None:
