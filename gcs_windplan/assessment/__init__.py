@@ -1,17 +1,17 @@
 """Judging a mission: what flying it takes in terrain and wind, and what it breaks."""
 
 from gcs_windplan.assessment.assessment import (
+    AssessedLeg,
     Assessment,
+    AssessmentLimits,
     Finding,
     GroundMap,
-    JudgedLeg,
-    Limits,
+    MissionTotals,
     Outline,
     Profile,
     Severity,
     Source,
     Stop,
-    Sums,
     Verdict,
 )
 from gcs_windplan.assessment.case import Case
@@ -19,18 +19,18 @@ from gcs_windplan.assessment.judge import assess
 from gcs_windplan.assessment.planned import assess_plan, case_of
 
 __all__ = [
+    "AssessedLeg",
     "Assessment",
+    "AssessmentLimits",
     "Case",
     "Finding",
     "GroundMap",
-    "JudgedLeg",
-    "Limits",
+    "MissionTotals",
     "Outline",
     "Profile",
     "Severity",
     "Source",
     "Stop",
-    "Sums",
     "Verdict",
     "assess",
     "assess_plan",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, TypeAlias
@@ -13,21 +14,22 @@ from gcs_windplan.vehicle import Autopilot, VehicleType
 #: danger: do not fly it like this; warning: look at it before flying.
 Severity: TypeAlias = Literal["danger", "warning"]
 Verdict: TypeAlias = Literal["clear", "warnings", "dangers"]
+Fact: TypeAlias = str | int | float | bool | None
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that is wrong with a mission.
+    """One thing that is wrong with a mission, as data.
 
-    `rule` is a stable short name (`clearance`, `height`, `wind`, `reserve`, ...), `message` one sentence with the
-    number, the limit and what to do. Where it is: the mission's `item` (from 1 on, home being 0), the `leg` (from 1
-    on), how far along the route (`distance`, level [m]) and the place; None where it concerns the whole mission.
-    `value` and `limit` are in `unit`.
+    `rule` is a stable short name (`clearance`, `height`, `wind`, `reserve`, ...). Where it is: the mission's `item`
+    (from 1 on, home being 0), the `leg` (from 1 on), how far along the route (`distance`, level [m]) and the place;
+    None where it concerns the whole mission. `value` and `limit` are in `unit`, `facts` what else the rule knows, in
+    SI units. `message` is one sentence with the number, the limit and what to do; `wording.py` makes it of the rest.
     """
 
     rule: str
     severity: Severity
-    message: str
+    message: str = ""
     item: int | None = None
     leg: int | None = None
     distance: float | None = None
@@ -36,6 +38,7 @@ class Finding:
     value: float | None = None
     limit: float | None = None
     unit: str = ""
+    facts: Mapping[str, Fact] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +70,7 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedLeg:
+class AssessedLeg:
     """From one stop to the next; figures as in `gcs_windplan.flight.flight.Leg`.
 
     `item` is the one that it leads to. Angles in degrees from true north, lengths in m, speeds in m/s, means over the
@@ -156,7 +159,7 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class AssessmentLimits:
     """What a mission is judged against; None: no such limit. Heights above ground and lengths [m], speeds [m/s].
 
     `battery` is the smallest share of the capacity that must be left at the end, `reserve_seconds` of level flight must
@@ -191,7 +194,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
-class Sums:
+class MissionTotals:
     """The whole mission: times [s], lengths and heights [m], energy [J] and share of the battery left at the end.
 
     `seconds` from arming to disarmed, with take-off, holds and landing; `wind` and `gust` the strongest met [m/s],
@@ -228,10 +231,10 @@ class Assessment:
     vertical_datum: str
     departure: datetime | None
     stops: tuple[Stop, ...]
-    legs: tuple[JudgedLeg, ...]
+    legs: tuple[AssessedLeg, ...]
     profile: Profile
-    sums: Sums
-    limits: Limits
+    totals: MissionTotals
+    limits: AssessmentLimits
     findings: tuple[Finding, ...]
     ground: GroundMap
     outlines: tuple[Outline, ...] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from datetime import datetime
 
-from gcs_windplan.assessment.assessment import Limits, Source
+from gcs_windplan.assessment.assessment import AssessmentLimits, Source
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission import Mission
 from gcs_windplan.scene import Airspace
@@ -33,7 +33,7 @@ class Case:
     vehicle_type: VehicleType
     pace: Pace
     cruise: float
-    limits: Limits = field(default_factory=Limits)
+    limits: AssessmentLimits = field(default_factory=AssessmentLimits)
     airframe: Airframe | None = None
     gusts: tuple[WindField, ...] = ()
     members: tuple[WindField, ...] = ()

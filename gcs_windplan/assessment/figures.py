@@ -1,4 +1,4 @@
-"""The stops and legs of a mission as flown, and its sums."""
+"""The stops and legs of a mission as flown, and its totals."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.assessment.assessment import JudgedLeg, Stop, Sums
+from gcs_windplan.assessment.assessment import AssessedLeg, MissionTotals, Stop
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.flown import Flown
 from gcs_windplan.assessment.heights import Heights
@@ -17,7 +17,7 @@ from gcs_windplan.assessment.track import Track
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Judged:
+class AssessedMission:
     """All that the rules look at: the case, the mission as flown, its stops and legs.
 
     `legs[i]` leads from `stops[i]` to `stops[i + 1]` and is the move `track.leg_moves[i]`. `distances` (n + 1,) [m] are
@@ -29,7 +29,7 @@ class Judged:
     heights: Heights
     distances: FloatArray
     stops: tuple[Stop, ...]
-    legs: tuple[JudgedLeg, ...]
+    legs: tuple[AssessedLeg, ...]
     back: WaysBack
     aside: WaysBack | None
 
@@ -39,19 +39,19 @@ class Judged:
         return self.flown.track
 
 
-def judged(flown: Flown, heights: Heights, case: Case) -> Judged:
+def assessed_mission(flown: Flown, heights: Heights, case: Case) -> AssessedMission:
     """The stops and legs of a mission as flown."""
     track = flown.track
     distances = np.concatenate([[0.0], np.cumsum(track.per_move(track.levels))])
     stops, home = _stops(flown, distances, case), track.course.home
     back, aside = ways_home(stops, home, case), ways_to_rally(stops, home, case)
-    return Judged(
+    return AssessedMission(
         case, flown, heights, distances, with_energies(stops, back, aside), _legs(flown, heights, case), back, aside
     )
 
 
-def drawn(flown: Flown, case: Case) -> FloatArray | None:
-    """The share of the battery that is drawn before each move, and after all (n + 1,)."""
+def share_used(flown: Flown, case: Case) -> FloatArray | None:
+    """The share of the battery that is used before each move, and after all (n + 1,)."""
     if flown.energies is None or case.airframe is None:
         return None
     return np.concatenate([[0.0], np.cumsum(flown.energies)]) / case.airframe.battery.capacity
@@ -92,7 +92,7 @@ def _stops(flown: Flown, distances: FloatArray, case: Case) -> tuple[Stop, ...]:
 
 def _left(flown: Flown, after: int, holds: bool, case: Case) -> float | None:
     """The share of the battery that is left on arrival at the end of a move, before it holds there."""
-    used = drawn(flown, case)
+    used = share_used(flown, case)
     if used is None or case.airframe is None:
         return None
     hold = float(flown.waiting[after - 1]) if holds and flown.waiting is not None else 0.0
@@ -117,7 +117,7 @@ def _lands_here(track: Track, after: int) -> int:
     return 0
 
 
-def _legs(flown: Flown, heights: Heights, case: Case) -> tuple[JudgedLeg, ...]:
+def _legs(flown: Flown, heights: Heights, case: Case) -> tuple[AssessedLeg, ...]:
     track, motion = flown.track, flown.motion
     means = _Means(
         levels=track.per_move(track.levels),
@@ -144,7 +144,7 @@ class _Means:
     turns: FloatArray
 
 
-def _leg(number: int, i: int, means: _Means, flown: Flown, heights: Heights) -> JudgedLeg:
+def _leg(number: int, i: int, means: _Means, flown: Flown, heights: Heights) -> AssessedLeg:
     """The leg that is move i."""
     move, stopped = flown.track.moves[i], flown.stopped[i] > 0
     east, north, climb = np.subtract(move.end, move.start)
@@ -152,7 +152,7 @@ def _leg(number: int, i: int, means: _Means, flown: Flown, heights: Heights) -> 
     along, across = float(means.along[i]), float(means.across[i])
     track_deg = math.degrees(math.atan2(east, north)) + float(means.turns[i])
     crab = math.degrees(math.atan2(-across, means.ground[i] - along)) if distance > 0 else 0.0
-    return JudgedLeg(
+    return AssessedLeg(
         number=number,
         item=move.item,
         track_deg=track_deg % 360,
@@ -172,14 +172,14 @@ def _leg(number: int, i: int, means: _Means, flown: Flown, heights: Heights) -> 
     )
 
 
-def sums_of(mission: Judged, wind: float, gust: float | None, reserve: float | None) -> Sums:
+def totals_of(mission: AssessedMission, wind: float, gust: float | None, reserve: float | None) -> MissionTotals:
     """The whole mission; `wind` and `gust` are the strongest met [m/s], `reserve` what must be left."""
     flown, track, legs = mission.flown, mission.track, mission.legs
     kinds = np.array([move.kind for move in track.moves])
     clearances = [leg.clearance for leg in legs if not math.isnan(leg.clearance)]
     peaks = [leg.height for leg in legs if not math.isnan(leg.height)]
-    used = drawn(flown, mission.case)
-    return Sums(
+    used = share_used(flown, mission.case)
+    return MissionTotals(
         seconds=math.inf if flown.stopped.any() else float(flown.begins[-1]),
         takeoff_seconds=float(flown.seconds[kinds == "take-off"].sum()),
         landing_seconds=float(flown.seconds[kinds == "landing"].sum()),

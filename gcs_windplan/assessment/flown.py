@@ -11,7 +11,15 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.known import KnownWind, known_wind
-from gcs_windplan.assessment.motion import Going, Motion, circling_watts, energy, motion_in, waiting_watts, watts
+from gcs_windplan.assessment.motion import (
+    Motion,
+    MotionCommand,
+    circling_watts,
+    energy,
+    motion_in,
+    waiting_watts,
+    watts,
+)
 from gcs_windplan.assessment.track import Track
 from gcs_windplan.flight.duration import circling_seconds, circling_speed, time_course
 
@@ -130,20 +138,20 @@ def sample(track: Track, case: Case) -> Samples:
     )
 
 
-def going_of(track: Track, moves: IntArray, direction: FloatArray, peaks: FloatArray, case: Case) -> Going:
-    """How samples of moves are meant to go; `peaks` (n,) [m/s] are the moves' speeds along the slope."""
+def commands_of(track: Track, moves: IntArray, direction: FloatArray, peaks: FloatArray, case: Case) -> MotionCommand:
+    """How samples of moves are commanded; `peaks` (n,) [m/s] are the moves' speeds along the slope."""
     told = [move.told for move in track.moves]
     ground = np.array([math.nan if one.ground is None else one.ground for one in told])
     air = np.array([case.cruise if one.air is None else one.air for one in told])
-    return Going(direction, peaks[moves], np.nan_to_num(ground)[moves], air[moves])
+    return MotionCommand(direction, peaks[moves], np.nan_to_num(ground)[moves], air[moves])
 
 
 def _timed(track: Track, samples: Samples, wind: KnownWind, case: Case) -> Flown:
     """The track in the winds at its samples."""
     winds = wind.filled
     moving, peaks = _moving(track, samples, winds, case)
-    going = going_of(track, samples.move, samples.direction, peaks, case)
-    motion = motion_in(winds, going, case)
+    command = commands_of(track, samples.move, samples.direction, peaks, case)
+    motion = motion_in(winds, command, case)
     lengths = track.per_move(track.lengths)
     stopped = np.zeros(len(track.moves))
     np.maximum.at(stopped, samples.move, motion.stopped.astype(np.float64))
@@ -172,11 +180,11 @@ def _moving(track: Track, samples: Samples, winds: FloatArray, case: Case) -> tu
         peaks = np.where(times.peaks > 0, times.peaks, _speeds_upright(track, case))
         curves = np.maximum(lengths - straight, 0.0) / np.maximum(peaks, 0.01)  # by how much a curve is longer
         return seconds + np.where(np.isfinite(seconds), curves, 0.0), peaks
-    going = going_of(track, samples.move, samples.direction, _speeds_upright(track, case), case)
-    motion = motion_in(winds, going, case)
+    command = commands_of(track, samples.move, samples.direction, _speeds_upright(track, case), case)
+    motion = motion_in(winds, command, case)
     with np.errstate(divide="ignore"):
         seconds = samples.sums(samples.share / np.where(motion.stopped, 0.0, motion.speed)) * lengths
-    return np.where(lengths > 0, seconds, 0.0), going.slope[samples.first[:-1].clip(max=len(samples.move) - 1)]
+    return np.where(lengths > 0, seconds, 0.0), command.slope[samples.first[:-1].clip(max=len(samples.move) - 1)]
 
 
 def _speeds_upright(track: Track, case: Case) -> FloatArray:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gcs_windplan.assessment.assessment import Assessment, Finding
 from gcs_windplan.assessment.case import Case
-from gcs_windplan.assessment.figures import judged, sums_of
+from gcs_windplan.assessment.figures import assessed_mission, totals_of
 from gcs_windplan.assessment.flown import fly_track
 from gcs_windplan.assessment.heights import heights_of
 from gcs_windplan.assessment.home import check_places, with_home
@@ -16,9 +16,10 @@ from gcs_windplan.assessment.outlines import outlines_of
 from gcs_windplan.assessment.profile import ground_map_of, profile_of
 from gcs_windplan.assessment.rules import RULES
 from gcs_windplan.assessment.rules.battery import reserve_of
-from gcs_windplan.assessment.rules.saying import located
+from gcs_windplan.assessment.rules.places import located
 from gcs_windplan.assessment.rules.wind import strongest_gust, strongest_wind
 from gcs_windplan.assessment.track import Track, track_of
+from gcs_windplan.assessment.wording import message_of
 from gcs_windplan.errors import InputError
 
 
@@ -30,8 +31,9 @@ def assess(case: Case, more: Iterable[Finding] = ()) -> Assessment:
     """
     case, track = _tracked(case)
     flown = fly_track(track, case)
-    mission = judged(flown, heights_of(track, case.terrain), case)
+    mission = assessed_mission(flown, heights_of(track, case.terrain), case)
     findings = [*more, *located([found for rule in RULES for found in rule(mission)], case)]
+    findings = [replace(one, message=one.message or message_of(one)) for one in findings]
     return Assessment(
         name=case.name,
         autopilot=case.autopilot,
@@ -42,7 +44,7 @@ def assess(case: Case, more: Iterable[Finding] = ()) -> Assessment:
         stops=mission.stops,
         legs=mission.legs,
         profile=profile_of(mission),
-        sums=sums_of(mission, strongest_wind(mission), strongest_gust(mission), reserve_of(mission)),
+        totals=totals_of(mission, strongest_wind(mission), strongest_gust(mission), reserve_of(mission)),
         limits=case.limits,
         findings=tuple(sorted(findings, key=_order)),
         ground=ground_map_of(mission),

@@ -1,4 +1,4 @@
-"""The wind as far as it is known: where a field has none the rest is told all the same."""
+"""The wind as far as it is known: where a field has none, the rest is known all the same."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _FEW = 8  # points that are asked for one by one
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownWind:
-    """Winds (n, 3) [m/s], NaN where none is known; where the field refused (n,), and what it said first."""
+    """Winds (n, 3) [m/s], NaN where none is known; where the field refused (n,), and its first reason."""
 
     winds: FloatArray
     refused: BoolArray
-    said: str | None = None
+    reason: str | None = None
 
     @property
     def filled(self) -> FloatArray:
@@ -32,12 +32,12 @@ def known_wind(field: WindField, points: FloatArray, seconds: FloatArray) -> Kno
     try:
         return KnownWind(field.at(points, seconds), np.zeros(len(points), dtype=np.bool_))
     except WindError as error:
-        said = str(error)
+        reason = str(error)
     if len(points) <= 1:
-        return KnownWind(np.full((len(points), 3), np.nan), np.ones(len(points), dtype=np.bool_), said)
+        return KnownWind(np.full((len(points), 3), np.nan), np.ones(len(points), dtype=np.bool_), reason)
     size = 1 if len(points) <= _FEW else max(len(points) // _FEW, 1)
     parts = [known_wind(field, points[i : i + size], seconds[i : i + size]) for i in range(0, len(points), size)]
-    said = next((part.said for part in parts if part.said is not None), said)
+    reason = next((part.reason for part in parts if part.reason is not None), reason)
     return KnownWind(
-        np.concatenate([part.winds for part in parts]), np.concatenate([part.refused for part in parts]), said
+        np.concatenate([part.winds for part in parts]), np.concatenate([part.refused for part in parts]), reason
     )

@@ -17,7 +17,7 @@ _STUCK = 0.01  # [m/s] slower than this it stands against the wind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Going:
+class MotionCommand:
     """Where and how fast n samples are meant to go, (n,) each but for `direction` (n, 3), a unit vector.
 
     `slope` [m/s] is the speed along the slope that a multicopter comes to at most. `air` is a fixed-wing's airspeed,
@@ -35,7 +35,7 @@ class Motion:
     """What flying takes at n samples, (n,) each [m/s]: along the slope, over ground, through the air, upwards.
 
     `needed` is the airspeed that the command asks for, beyond what the vehicle reaches where it is slower for that;
-    `stopped` where it makes no way at all. Wind `along` from behind and `across` from left to right.
+    `stopped` where it cannot make headway. Wind `along` from behind and `across` from left to right.
     """
 
     speed: FloatArray
@@ -48,28 +48,28 @@ class Motion:
     stopped: BoolArray
 
 
-def motion_in(winds: FloatArray, going: Going, case: Case) -> Motion:
-    """How the vehicle goes in winds (n, 3) [m/s] by the exact wind triangle.
+def motion_in(winds: FloatArray, command: MotionCommand, case: Case) -> Motion:
+    """How the vehicle flies in winds (n, 3) [m/s] by the exact wind triangle.
 
     A multicopter holds the ground speed commanded, as far as its largest airspeed allows; a fixed-wing holds its
     airspeed, raised where a ground speed is commanded that it would not reach.
     """
-    level = np.hypot(going.direction[:, 0], going.direction[:, 1])
+    level = np.hypot(command.direction[:, 0], command.direction[:, 1])
     upright = level <= _UPRIGHT
     safe = np.where(upright, 1.0, level)
-    track = going.direction[:, :2] / safe[:, None]
+    track = command.direction[:, :2] / safe[:, None]
     along = np.where(upright, 0.0, (winds[:, :2] * track).sum(axis=1))
     across = np.where(upright, 0.0, winds[:, 0] * track[:, 1] - winds[:, 1] * track[:, 0])
     if case.hovers:
-        ground, air, needed = _held_over_ground(going.slope * level, along, across, case.fastest)
+        ground, air, needed = _held_over_ground(command.slope * level, along, across, case.fastest)
     else:
-        ground, air, needed = _held_through_air(going, along, across, case.fastest)
+        ground, air, needed = _held_through_air(command, along, across, case.fastest)
     blowing = np.hypot(winds[:, 0], winds[:, 1])
     air = np.where(upright, blowing if case.hovers else air, air)
     needed = np.where(upright, air, needed)
-    speed = np.where(upright, going.slope, ground / safe)
+    speed = np.where(upright, command.slope, ground / safe)
     stopped = np.where(upright, (blowing > case.fastest) & case.hovers, ground <= _STUCK)
-    climb = speed * going.direction[:, 2] - winds[:, 2]
+    climb = speed * command.direction[:, 2] - winds[:, 2]
     return Motion(speed, np.where(upright, 0.0, ground), air, climb, needed, along, across, stopped)
 
 
@@ -86,7 +86,7 @@ def watts(motion: Motion, altitudes: FloatArray, case: Case) -> FloatArray | Non
 
 
 def waiting_watts(winds: FloatArray, altitudes: FloatArray, climb: FloatArray, case: Case) -> FloatArray | None:
-    """The power (n,) [W] for staying over a place in winds (n, 3), or going up or down there [m/s]."""
+    """The power (n,) [W] for staying over a place in winds (n, 3), or climbing or descending there [m/s]."""
     if case.airframe is None:
         return None
     density = density_at(altitudes)
@@ -122,13 +122,13 @@ def _held_over_ground(
 
 
 def _held_through_air(
-    going: Going, along: FloatArray, across: FloatArray, fastest: float
+    command: MotionCommand, along: FloatArray, across: FloatArray, fastest: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The same where an airspeed is commanded, and perhaps a least ground speed."""
-    raised = np.where(going.ground > 0, np.hypot(going.ground - along, across), 0.0)
-    slow = np.sqrt(np.maximum(going.air**2 - across**2, 0.0)) + along
-    needed = np.where((going.ground > 0) & (slow < going.ground), np.maximum(raised, going.air), going.air)
-    air = np.minimum(needed, np.maximum(fastest, going.air))
+    raised = np.where(command.ground > 0, np.hypot(command.ground - along, across), 0.0)
+    slow = np.sqrt(np.maximum(command.air**2 - across**2, 0.0)) + along
+    needed = np.where((command.ground > 0) & (slow < command.ground), np.maximum(raised, command.air), command.air)
+    air = np.minimum(needed, np.maximum(fastest, command.air))
     spare = air**2 - across**2
     ground = np.where(spare >= 0, np.sqrt(np.maximum(spare, 0.0)) + along, 0.0)
     return np.maximum(ground, 0.0), air, np.where(spare >= 0, needed, np.abs(across))

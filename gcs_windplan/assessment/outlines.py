@@ -22,8 +22,8 @@ _LONGEST: Final = 500.0  # [m] of a side that is as good as straight in latitude
 
 def outlines_of(case: Case) -> tuple[Outline, ...]:
     """All areas, for maps and for judging."""
-    outlines = [_of_prism(prism, "keep-out") for prism in case.airspace.keep_out]
-    outlines += [_of_prism(prism, "keep-in") for prism in case.airspace.keep_in]
+    outlines = [outline_of(prism, "keep-out") for prism in case.airspace.keep_out]
+    outlines += [outline_of(prism, "keep-in") for prism in case.airspace.keep_in]
     if case.obstacles is not None:
         outlines += [outline for obstacle in case.obstacles.items for outline in _of_obstacle(obstacle)]
     fence = case.mission.fence
@@ -43,7 +43,8 @@ def _kind(inclusion: bool) -> str:
     return "fence-in" if inclusion else "fence-out"
 
 
-def _of_prism(prism: Prism, kind: str) -> Outline:
+def outline_of(prism: Prism, kind: str) -> Outline:
+    """An area of the airspace, for maps and for judging."""
     floor = prism.floor if math.isfinite(prism.floor) else None
     ceiling = prism.ceiling if math.isfinite(prism.ceiling) else None
     return Outline(prism.name, kind, prism.corners, floor, ceiling)

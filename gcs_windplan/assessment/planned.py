@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from gcs_windplan.assessment.assessment import Assessment, Limits, Source
+from gcs_windplan.assessment.assessment import Assessment, AssessmentLimits, Source
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.judge import assess
 from gcs_windplan.flight.duration import pace_of
@@ -62,10 +62,10 @@ def pace_with_rates(pace: Pace, vehicle: Vehicle) -> Pace:
     return pace if vehicle.hovers else replace(pace, climb=vehicle.climb, descent=vehicle.descent)
 
 
-def limits_of(request: Request) -> Limits:
+def limits_of(request: Request) -> AssessmentLimits:
     """The request's limits, and what its vehicle can do."""
     vehicle, airframe = request.vehicle, request.airframe
-    return Limits(
+    return AssessmentLimits(
         clearance=request.clearance,
         max_height=request.max_height,
         wind=request.limits.wind,

@@ -10,8 +10,8 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.assessment.assessment import GroundMap, Profile
 from gcs_windplan.assessment.case import Case
-from gcs_windplan.assessment.figures import Judged, drawn
-from gcs_windplan.assessment.flown import going_of
+from gcs_windplan.assessment.figures import AssessedMission, share_used
+from gcs_windplan.assessment.flown import commands_of
 from gcs_windplan.assessment.known import known_wind
 from gcs_windplan.assessment.motion import motion_in, watts
 
@@ -23,7 +23,7 @@ _LEAST_MARGIN: Final = 150.0  # [m]
 _NARROWEST: Final = 0.6  # of the longer side, the shorter one of the map
 
 
-def profile_of(mission: Judged) -> Profile:
+def profile_of(mission: AssessedMission) -> Profile:
     """About 1500 samples along the flight, all corners among them."""
     case, flown, track = mission.case, mission.flown, mission.track
     piece, t = _spread(mission)
@@ -35,7 +35,7 @@ def profile_of(mission: Judged) -> Profile:
     seconds = _clock(mission, piece, t)
     winds = known_wind(case.wind, points, seconds).winds
     direction = (vectors / np.where(track.lengths > 0, track.lengths, 1.0)[:, None])[piece]
-    motion = motion_in(winds, going_of(track, owner, direction, flown.peaks, case), case)
+    motion = motion_in(winds, commands_of(track, owner, direction, flown.peaks, case), case)
     latitudes, longitudes = case.frame.to_geographic(points)
     power = watts(motion, points[:, 2], case)
     return Profile(
@@ -59,7 +59,7 @@ def profile_of(mission: Judged) -> Profile:
     )
 
 
-def _spread(mission: Judged) -> tuple[IntArray, FloatArray]:
+def _spread(mission: AssessedMission) -> tuple[IntArray, FloatArray]:
     """Pieces and shares of them, evenly along the way; every move has both of its ends, one of no length too."""
     track = mission.track
     lengths = track.per_move(track.lengths)
@@ -78,7 +78,7 @@ def _spread(mission: Judged) -> tuple[IntArray, FloatArray]:
     return piece, np.where(sizes > 0, np.where(share == 1, 1.0, inside), share)
 
 
-def _clock(mission: Judged, piece: IntArray, t: FloatArray) -> FloatArray:
+def _clock(mission: AssessedMission, piece: IntArray, t: FloatArray) -> FloatArray:
     """When places are passed [s]: along a move evenly in time between its samples."""
     flown, track = mission.flown, mission.track
     lengths = track.lengths
@@ -97,13 +97,13 @@ def _clock(mission: Judged, piece: IntArray, t: FloatArray) -> FloatArray:
     return passed
 
 
-def _left(mission: Judged, seconds: FloatArray) -> FloatArray | None:
-    """The share of the battery that is left at moments; drawn evenly through each move."""
-    used = drawn(mission.flown, mission.case)
+def _left(mission: AssessedMission, seconds: FloatArray) -> FloatArray | None:
+    """The share of the battery that is left at moments; used evenly through each move."""
+    used = share_used(mission.flown, mission.case)
     return None if used is None else 1 - np.interp(seconds, mission.flown.begins, used)
 
 
-def ground_map_of(mission: Judged) -> GroundMap:
+def ground_map_of(mission: AssessedMission) -> GroundMap:
     """The ground around the route in at most 300 x 300 nodes, and 15 x 15 arrows of wind half-way in time."""
     case, track = mission.case, mission.track
     corners = np.concatenate([np.array([track.course.home]), track.starts, track.ends])[:, :2]

@@ -12,7 +12,7 @@ from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.assessment.assessment import Stop
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.known import known_wind
-from gcs_windplan.assessment.motion import Going, energy, motion_in, waiting_watts, watts
+from gcs_windplan.assessment.motion import MotionCommand, energy, motion_in, waiting_watts, watts
 from gcs_windplan.assessment.track import return_altitude
 from gcs_windplan.mission import Frame, RallyPoint
 from gcs_windplan.vehicle.pace import landing_seconds, ramp_seconds
@@ -119,8 +119,8 @@ def _flown_level(starts: FloatArray, ends: FloatArray, begins: FloatArray, case:
     winds = known_wind(case.wind, places, when.ravel()).filled
     direction = np.repeat(vectors / np.maximum(lengths, 1e-9)[:, None], _SAMPLES, axis=0)
     count = len(places)
-    going = Going(direction, np.full(count, speed), np.zeros(count), np.full(count, case.cruise))
-    motion = motion_in(winds, going, case)
+    command = MotionCommand(direction, np.full(count, speed), np.zeros(count), np.full(count, case.cruise))
+    motion = motion_in(winds, command, case)
     stopped = motion.stopped.reshape(-1, _SAMPLES).any(axis=1) & (lengths > _NO_WAY)
     parts = (lengths[:, None] / _SAMPLES) / np.maximum(motion.speed, 0.01).reshape(-1, _SAMPLES)
     ramp = ramp_seconds(speed, case.pace.acceleration, case.pace.jerk, case.pace.rise) if case.hovers else 0.0
@@ -132,7 +132,7 @@ def _flown_level(starts: FloatArray, ends: FloatArray, begins: FloatArray, case:
 
 
 def _flown_upright(level: _Level, altitudes: FloatArray, sinking: FloatArray, case: Case) -> FloatArray:
-    """The power for going up at the begin, waiting at the end, and going down there at -`sinking` [m/s] (n, 3) [W]."""
+    """The power for climbing at the begin, waiting at the end, and descending there at -`sinking` [m/s] (n, 3) [W]."""
     rising = np.full(len(altitudes), case.pace.climb)
     powers = [
         waiting_watts(winds, altitudes, climb, case)

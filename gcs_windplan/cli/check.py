@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -123,6 +122,8 @@ def _counts(findings: tuple[FirmwareFinding, ...]) -> dict[str, int]:
 def _print_json(
     file: Path, firmware: Firmware, items: int, findings: tuple[FirmwareFinding, ...], notes: list[str]
 ) -> None:
+    from gcs_windplan.json_text import json_text
+
     document = {
         "verb": "check",
         "file": str(file),
@@ -137,4 +138,4 @@ def _print_json(
         "notes": notes,
         "exit_code": 1 if _counts_as_found(findings) else 0,
     }
-    typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+    typer.echo(json_text(document))

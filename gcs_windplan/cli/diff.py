@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -105,6 +104,8 @@ def _note_fences(first: Mission, second: Mission) -> None:
 def _report(comparisons: dict[str, Comparison], firmware: Autopilot | None, as_json: bool) -> None:
     same = all(comparison.same for comparison in comparisons.values())
     if as_json:
+        from gcs_windplan.json_text import json_text
+
         parts = {
             kind: {
                 "differences": [str(difference) for difference in comparison.differences],
@@ -112,7 +113,7 @@ def _report(comparisons: dict[str, Comparison], firmware: Autopilot | None, as_j
             }
             for kind, comparison in comparisons.items()
         }
-        typer.echo(json.dumps({"verb": "diff", "same": same, "autopilot": firmware, "parts": parts}, indent=2))
+        typer.echo(json_text({"verb": "diff", "same": same, "autopilot": firmware, "parts": parts}))
     else:
         _print(comparisons, firmware, same)
     if not same:

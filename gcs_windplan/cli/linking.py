@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -71,7 +70,9 @@ def answering(verb: str, as_json: bool) -> Iterator[None]:
             code = code_of(error)
             verdict = next((verdict for verdict, number in EXIT_CODES.items() if number == code), "error")
             document = {"verb": verb, "outcome": verdict, "exit_code": code, "error": "; ".join(told(error))}
-            typer.echo(json.dumps(document, indent=2))
+            from gcs_windplan.json_text import json_text
+
+            typer.echo(json_text(document))
         raise
 
 
@@ -123,6 +124,8 @@ def report(
     verdict = verdict_of(parts)
     code = EXIT_CODES[verdict]
     if as_json:
+        from gcs_windplan.json_text import json_text
+
         described = [_described(part) for part in parts]
         described += [{"type": kind, "outcome": f"not {_DEEDS[verb]}"} for kind in skipped]
         document = {"verb": verb, "vehicle": described_peer(peer), "outcome": verdict, "exit_code": code}
@@ -130,7 +133,7 @@ def report(
             f"{part.mission_type}: {part.outcome.message}" for part in parts if part.outcome.verdict != "accepted"
         ]
         failed = {"error": "; ".join(errors)} if errors else {}
-        typer.echo(json.dumps({**document, **failed, "parts": described, **(more or {})}, indent=2))
+        typer.echo(json_text({**document, **failed, "parts": described, **(more or {})}))
     for part in parts:
         if verb == "pull" and part.outcome.verdict == "accepted":
             note(f"{part.mission_type} was read: {part.outcome.message}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -156,9 +155,11 @@ def _report(mission: Mission, parts: list[Part], peer: Peer, output: Path, as_js
     counts = {part.mission_type: len(part.items) for part in parts}
     counts["mission"] = len(mission.items)
     if as_json:
+        from gcs_windplan.json_text import json_text
+
         vehicle = linking.described_peer(peer)
         document = {"verb": "pull", "vehicle": vehicle, "outcome": "accepted", "exit_code": 0, "file": str(output)}
-        typer.echo(json.dumps({**document, "items": counts}, indent=2))
+        typer.echo(json_text({**document, "items": counts}))
         return
     held = ", ".join(f"{kind} {counts[kind]}" for kind in _ALL if kind in counts)
     typer.echo(f"read from {peer}: items of {held}")

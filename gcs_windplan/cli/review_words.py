@@ -39,23 +39,23 @@ def lines(assessment: Assessment) -> Iterator[str]:
 
 
 def _head(assessment: Assessment) -> str:
-    sums = assessment.sums
+    totals = assessment.totals
     who = _FIRMWARES[assessment.autopilot, assessment.vehicle_type]
-    time = f"{clock(sums.seconds)} min in all" if math.isfinite(sums.seconds) else "cannot be flown to its end"
+    time = f"{clock(totals.seconds)} min in all" if math.isfinite(totals.seconds) else "cannot be flown to its end"
     return (
-        f"{assessment.name} ({who}): {len(assessment.legs)} legs, {sums.length / 1000:.2f} km, {time}; above ground"
-        f" {_number(sums.clearance)} to {_number(sums.height)} m ({assessment.vertical_datum})"
+        f"{assessment.name} ({who}): {len(assessment.legs)} legs, {totals.length / 1000:.2f} km, {time}; above ground"
+        f" {_number(totals.clearance)} to {_number(totals.height)} m ({assessment.vertical_datum})"
     )
 
 
 def _air(assessment: Assessment) -> str:
-    sums = assessment.sums
-    parts = [f"wind up to {sums.wind:.1f} m/s"]
-    if sums.gust is not None:
-        parts.append(f"gusts up to {sums.gust:.1f} m/s")
-    if sums.energy is not None and sums.left is not None:
-        kept = "" if sums.reserve is None else f" ({100 * sums.reserve:.0f} % must be)"
-        parts.append(f"{sums.energy / 3600:.1f} Wh, {100 * sums.left:.0f} % of the battery left{kept}")
+    totals = assessment.totals
+    parts = [f"wind up to {totals.wind:.1f} m/s"]
+    if totals.gust is not None:
+        parts.append(f"gusts up to {totals.gust:.1f} m/s")
+    if totals.energy is not None and totals.left is not None:
+        kept = "" if totals.reserve is None else f" ({100 * totals.reserve:.0f} % must be)"
+        parts.append(f"{totals.energy / 3600:.1f} Wh, {100 * totals.left:.0f} % of the battery left{kept}")
     return "; ".join(parts)
 
 

@@ -12,7 +12,7 @@ from gcs_windplan.cli.surroundings import Air, terrain_by_name, told, winds_by_n
 from gcs_windplan.errors import InputError, Problem, WindError
 
 if TYPE_CHECKING:
-    from gcs_windplan.assessment import Case, Limits
+    from gcs_windplan.assessment import AssessmentLimits, Case
     from gcs_windplan.geo.frame import GeoPoint, LocalFrame
     from gcs_windplan.mission import Home, Mission
     from gcs_windplan.terrain import Extent, Terrain
@@ -125,7 +125,7 @@ def _refuse_limits_unknown(case: Case, options: Options) -> None:
         raise InputError(Problem("the battery is not known: leave it out, or give an airframe", "--min-battery"))
 
 
-def limits_with(own: Limits, options: Options, defaults: bool = False) -> Limits:
+def limits_with(own: AssessmentLimits, options: Options, defaults: bool = False) -> AssessmentLimits:
     """The limits with those that the options name; `defaults` fills in a clearance of 30 m and a first leg of 500 m."""
     from gcs_windplan.jobs.missionfile.values import CLEARANCE, HEIGHT, Measure
     from gcs_windplan.units import SHARE, SPEED
@@ -260,13 +260,13 @@ def _cruise(mission: Mission, airframe: Airframe | None, autopilot: Autopilot) -
     return _CRUISE[autopilot] if mission.cruise_speed is None else mission.cruise_speed
 
 
-def _own_limits(airframe: Airframe | None) -> Limits:
-    from gcs_windplan.assessment import Limits
+def _own_limits(airframe: Airframe | None) -> AssessmentLimits:
+    from gcs_windplan.assessment import AssessmentLimits
 
     if airframe is None:
-        return Limits()
+        return AssessmentLimits()
     vehicle = airframe.vehicle
-    return Limits(climb=vehicle.climb, descent=vehicle.descent, airspeed=airframe.maximum_airspeed)
+    return AssessmentLimits(climb=vehicle.climb, descent=vehicle.descent, airspeed=airframe.maximum_airspeed)
 
 
 def _places(mission: Mission, options: Options) -> list[tuple[str, GeoPoint]]:

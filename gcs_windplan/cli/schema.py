@@ -16,8 +16,8 @@ def schema(
     from gcs_windplan.jobs.missionfile.reference import json_schema, schema_reference
 
     if json:
-        from json import dumps
+        from gcs_windplan.json_text import json_text
 
-        typer.echo(dumps(json_schema(), indent=1, ensure_ascii=False))
+        typer.echo(json_text(json_schema()))
     else:
         typer.echo(schema_reference())

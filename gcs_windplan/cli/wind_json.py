@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from datetime import UTC, datetime
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.json_text import json_text
 from gcs_windplan.wind.report.inventory import Count, FileFacts, GridFacts, Holding, Inventory
 from gcs_windplan.wind.report.series import Series
 from gcs_windplan.wind.report.sounding import Here, Sounding, Spot
@@ -58,7 +58,7 @@ def format_wind(found: Sounding | Spot) -> str:
 
 
 def _dumped(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    return json_text(document)
 
 
 def _time(seconds: float) -> str:

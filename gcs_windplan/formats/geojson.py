@@ -8,16 +8,16 @@ What lies across the antimeridian is cut there (section 3.1.9), and what leads o
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
+from gcs_windplan.json_text import json_text, json_value
+
 if TYPE_CHECKING:
-    from gcs_windplan.assessment import Assessment, Finding, JudgedLeg, Outline, Stop
+    from gcs_windplan.assessment import AssessedLeg, Assessment, Finding, Outline, Stop
 
 _DIGITS, _CENTIMETRES = 7, 2
 _OVER_POLE: Final = 179.9  # [deg] of longitude between two neighbours: their straight line leads over the pole
@@ -35,12 +35,7 @@ def format_geojson(assessment: Assessment) -> str:
         *(_rally(number, place) for number, place in enumerate(assessment.rally, start=1)),
     ]
     collection = {"type": "FeatureCollection", "name": assessment.name, "features": features}
-    return json.dumps(collection, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def plain(value: Any) -> Any:
-    """A figure as JSON takes it: null for what is not known or infinite."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    return json_text(collection) + "\n"
 
 
 def on_earth(longitude: float, latitude: float) -> tuple[float, float]:
@@ -51,7 +46,7 @@ def on_earth(longitude: float, latitude: float) -> tuple[float, float]:
     return (longitude + 180) % 360 - 180 if abs(longitude) > 180 else longitude, latitude
 
 
-def _leg(leg: JudgedLeg, assessment: Assessment) -> dict[str, Any]:
+def _leg(leg: AssessedLeg, assessment: Assessment) -> dict[str, Any]:
     """A leg as flown, a curve with its samples."""
     profile = assessment.profile
     inside = np.flatnonzero(profile.leg == leg.number)
@@ -62,8 +57,7 @@ def _leg(leg: JudgedLeg, assessment: Assessment) -> dict[str, Any]:
     line = [(start.longitude_deg, start.latitude_deg, start.altitude)]
     line += [(float(x), float(y), float(z)) for x, y, z in samples][1:-1]
     line.append((end.longitude_deg, end.latitude_deg, end.altitude))
-    figures = {name: plain(value) for name, value in asdict(leg).items()}
-    return _feature("leg", _line(line), figures, assessment)
+    return _feature("leg", _line(line), json_value(leg), assessment)
 
 
 def _line(places: Sequence[_Place]) -> dict[str, Any]:
@@ -110,13 +104,13 @@ def _between(first: float, second: float, share: float) -> float:
 
 
 def _stop(stop: Stop, assessment: Assessment) -> dict[str, Any]:
-    figures = {name: plain(value) for name, value in asdict(stop).items()}
     place = _place(*on_earth(stop.longitude_deg, stop.latitude_deg), stop.altitude)
-    return _feature("stop", {"type": "Point", "coordinates": place}, figures, assessment)
+    return _feature("stop", {"type": "Point", "coordinates": place}, json_value(stop), assessment)
 
 
 def _finding(finding: Finding) -> dict[str, Any]:
-    figures = {name: plain(value) for name, value in asdict(finding).items()}
+    figures = json_value(finding)
+    del figures["facts"]  # properties are flat
     if finding.latitude_deg is None or finding.longitude_deg is None:
         return _feature("finding", None, figures)
     return _feature("finding", _point(finding.longitude_deg, finding.latitude_deg), figures)

@@ -116,9 +116,9 @@ def _add_area(folder: Xml.Element, outline: Outline, assessment: Assessment, top
 
 
 def _description(assessment: Assessment) -> str:
-    sums = assessment.sums
+    totals = assessment.totals
     return (
-        f"{sums.length / 1000:.2f} km, {_clock(sums.seconds)} min; heights above mean sea level"
+        f"{totals.length / 1000:.2f} km, {_clock(totals.seconds)} min; heights above mean sea level"
         f" ({assessment.vertical_datum}); findings: {len(assessment.findings)}"
     )
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from gcs_windplan.formats.geojson import on_earth
 
 if TYPE_CHECKING:
-    from gcs_windplan.assessment import Assessment, JudgedLeg, Stop
+    from gcs_windplan.assessment import AssessedLeg, Assessment, Stop
 
-_Cell: TypeAlias = "Callable[[JudgedLeg, Stop], float | int | str | None]"
+_Cell: TypeAlias = "Callable[[AssessedLeg, Stop], float | int | str | None]"
 
 _COLUMNS: Final[tuple[tuple[str, int, _Cell], ...]] = (
     ("leg", 0, lambda leg, to: leg.number),

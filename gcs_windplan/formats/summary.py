@@ -2,61 +2,59 @@
 
 from __future__ import annotations
 
-import json
-import math
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from gcs_windplan.json_text import json_text, json_value
 from gcs_windplan.planning.export import flown_duration
 
 if TYPE_CHECKING:
+    from gcs_windplan.flight.flight import Waypoint
     from gcs_windplan.planning.planner import Plan
 
 
 def format_summary(plan: Plan) -> str:
     """The plan as JSON: SI units, angles in degrees from true north, wind towards where it blows.
 
+    null for what is not known, or infinite: the time of a member that cannot fly it, the energy of a way that is none.
     `search` holds counts only: the same plan gives the same text, whatever the machine.
     """
     request = plan.request
-    summary: dict[str, Any] = {
+    summary = {
         "name": request.name,
         "cost": str(plan.choice),
         "cost_value": plan.cost,
         "graph_cost_value": plan.graph_cost,
-        "departure": request.departure.isoformat() if request.departure else None,
-        "vehicle": asdict(request.vehicle),
+        "departure": request.departure,
+        "vehicle": request.vehicle,
         "wind": request.wind.name,
         "terrain": {"name": request.terrain.name, "vertical_datum": request.terrain.vertical_datum},
-        "limits": {"clearance": request.clearance, "max_height": request.max_height, **asdict(request.limits)},
+        "limits": {"clearance": request.clearance, "max_height": request.max_height, **json_value(request.limits)},
         "finish": request.finish,
-        "totals": asdict(plan.totals),
+        "totals": plan.totals,
         "ensemble": _ensemble(plan),
         "battery": _battery(plan),
         "ways_home": _ways_home(plan),
         "as_flown": _as_flown(plan),
-        "waypoints": [_waypoint(asdict(waypoint)) for waypoint in plan.waypoints],
-        "legs": [asdict(leg) for leg in plan.legs],
-        "notes": list(plan.notes),
+        "waypoints": [_waypoint(waypoint) for waypoint in plan.waypoints],
+        "legs": plan.legs,
+        "notes": plan.notes,
         "search": {
             "nodes": plan.effort.nodes,
             "expanded": plan.effort.expanded,
             "path_vertices": plan.effort.vertices,
         },
     }
-    return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(summary) + "\n"
 
 
 def _ensemble(plan: Plan) -> dict[str, Any] | None:
-    """How long the route takes over the members [s]; null where one cannot fly it. None where there is no ensemble."""
+    """How long the route takes over the members [s]; None where there is no ensemble."""
     if plan.spread is None:
         return None
-    known = [seconds if math.isfinite(seconds) else None for seconds in plan.spread.seconds]
-    quantiles = {f"{100 * q:g} %": plan.spread.at(q) for q in (0.1, 0.5, 0.9)}
     return {
         "robust": plan.request.robust,
-        "member_seconds": known,
-        "quantiles": {name: seconds if math.isfinite(seconds) else None for name, seconds in quantiles.items()},
+        "member_seconds": plan.spread.seconds,
+        "quantiles": {f"{100 * q:g} %": plan.spread.at(q) for q in (0.1, 0.5, 0.9)},
     }
 
 
@@ -71,24 +69,23 @@ def _battery(plan: Plan) -> dict[str, Any] | None:
     use = plan.battery
     if use is None:
         return None
-    total = use.total if math.isfinite(use.total) else None
-    return {"total": total, "usable": use.usable, "allowed_with_reserve": use.allowed, "left": list(use.left)}
+    return {"total": use.total, "usable": use.usable, "allowed_with_reserve": use.allowed, "left": use.left}
 
 
 def _ways_home(plan: Plan) -> dict[str, Any] | None:
-    """What flying home, or to the nearest rally point, takes from each waypoint [J], null where there is no way; and
-    where home comes out of reach with the reserve. None without an airframe."""
+    """What flying home, or to the nearest rally point, takes from each waypoint [J]; and where home comes out of reach
+    with the reserve. None without an airframe."""
     ways = plan.ways_home
     if ways is None:
         return None
-    home, rally = (
-        [joules if math.isfinite(joules) else None for joules in one] for one in (ways.energies, ways.diversions)
-    )
-    lost = None if ways.no_return is None else asdict(ways.no_return)
-    return {"home": home, "rally": rally if plan.request.rally else None, "point_of_no_return": lost}
+    return {
+        "home": ways.energies,
+        "rally": ways.diversions if plan.request.rally else None,
+        "point_of_no_return": ways.no_return,
+    }
 
 
-def _waypoint(fields: dict[str, Any]) -> dict[str, Any]:
+def _waypoint(waypoint: Waypoint) -> dict[str, Any]:
     """A waypoint with its place spread out."""
-    point: dict[str, Any] = fields.pop("point")
-    return point | fields
+    row = json_value(waypoint)
+    return {**row.pop("point"), **row}

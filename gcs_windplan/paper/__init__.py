@@ -1,6 +1,8 @@
-"""The paper's tables and figures, flown again."""
+"""The paper: its tables and figures, flown again; its wind fields and its collision test.
 
-from gcs_windplan.paper.reproduce import Reproduction, reproduce
-from gcs_windplan.paper.tables import Table
+The names are fetched when they are first asked for, so that only the reproduction imports matplotlib.
+"""
 
-__all__ = ["Reproduction", "Table", "reproduce"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -13,11 +13,11 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 from gcs_windplan.scene import Clearance, CollisionTest
 from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.terrain.analytic import Hill, hills
 from gcs_windplan.vehicle import SpeedModel, Vehicle
-from gcs_windplan.wind import Diverging, Jet, Rotation
 from gcs_windplan.wind.field import WindField
 
 AREA: Final = Extent(-2.0, -2.0, 2.0, 2.0)
@@ -37,18 +37,18 @@ HILLS: Final = (
     Hill(-0.5, 1.7, 0.35, 0.18),
 )
 
-Place = tuple[float, float]
+PlanePoint = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class PaperCase:
     """One of the paper's cases: its `number` there, what the wind is read as, the field, and a start and a goal."""
 
     number: str
     reading: str
     wind: WindField
-    start: Place
-    goal: Place
+    start: PlanePoint
+    goal: PlanePoint
 
     @property
     def title(self) -> str:
@@ -60,21 +60,21 @@ _TAIL: Final = ((-1.8, 0.2), (1.8, 1.6))  # begins in the jet, ends beside it, a
 
 #: The main choices. Case 1 is the first of its three readings; the starts and goals of cases 2 and 3 come from a sweep.
 CASES: Final = (
-    Case("1", "unit", Jet(), *_TAIL),
-    Case("2", "", Diverging(), (-1.8, 0.8), (1.6, -0.2)),
-    Case("3", "", Rotation(), (0.8, -2.0), (-2.0, 2.0)),
+    PaperCase("1", "unit", Jet(), *_TAIL),
+    PaperCase("2", "", Diverging(), (-1.8, 0.8), (1.6, -0.2)),
+    PaperCase("3", "", Rotation(), (0.8, -2.0), (-2.0, 2.0)),
 )
 
 #: Case 1 in the two other readings of (14), from the same start to the same goal.
 OTHER_READINGS: Final = (
-    Case("1", "magnitude", Jet(reading="magnitude"), *_TAIL),
-    Case("1", "literal", Jet(reading="literal"), *_TAIL),
+    PaperCase("1", "magnitude", Jet(reading="magnitude"), *_TAIL),
+    PaperCase("1", "literal", Jet(reading="literal"), *_TAIL),
 )
 
 #: Case 1 where a sweep came nearest to the printed digits: against the jet, or with (14) taken literally.
 NEAR_THE_DIGITS: Final = (
-    Case("1", "unit", Jet(), (1.6, 0.2), (-1.4, 0.8)),
-    Case("1", "literal", Jet(reading="literal"), (-2.0, -0.2), (1.8, -2.0)),
+    PaperCase("1", "unit", Jet(), (1.6, 0.2), (-1.4, 0.8)),
+    PaperCase("1", "literal", Jet(reading="literal"), (-2.0, -0.2), (1.8, -2.0)),
 )
 
 
@@ -83,7 +83,7 @@ def make_terrain() -> Dem:
     return hills(4.0, CELL, HILLS, name="four hills and four crags")
 
 
-def make_rules(terrain: Dem, test: CollisionTest = "exact") -> Clearance:
+def make_rules(terrain: Dem, test: CollisionTest | None = None) -> Clearance:
     """Legs must not touch the ground, by one test or the other."""
     return Clearance(terrain, 0.0, test=test)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gcs_windplan.paper.cases import CASES, NEAR_THE_DIGITS, OTHER_READINGS, Case, make_rules, make_vehicle
+from gcs_windplan.paper.cases import CASES, NEAR_THE_DIGITS, OTHER_READINGS, PaperCase, make_rules, make_vehicle
 from gcs_windplan.paper.flying import SHAPED, Route, fly_case, seconds_on_the_slope, sites_of
 from gcs_windplan.paper.graphs import lay_roadmap, lay_uniform
 from gcs_windplan.paper.published import ANGLE, COSTS, DISTANCE, HYBRID, TABLE_1, TABLE_2, TIME, printed_seconds
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.paper.tables import Table, in_seconds
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.veil import PrmVeil
@@ -30,7 +31,7 @@ class Setup:
 
 def fly_setups(terrain: Dem) -> tuple[Setup, ...]:
     """The main setup first (uniform, exact test, the paper's speeds); then one thing changed at a time."""
-    exact, sampled = make_rules(terrain), make_rules(terrain, "paper")
+    exact, sampled = make_rules(terrain), make_rules(terrain, SampledTest())
     cases = (*CASES, *OTHER_READINGS, *NEAR_THE_DIGITS)
     sites = sites_of(exact, CASES)
     uniform = lay_uniform(exact, sites)
@@ -53,7 +54,7 @@ def fly_setups(terrain: Dem) -> tuple[Setup, ...]:
     return tuple(setups)
 
 
-def key_of(case: Case) -> str:
+def key_of(case: PaperCase) -> str:
     """A case with its way, as several cases share a title."""
     return f"{case.title}, ({case.start[0]:g}, {case.start[1]:g}) to ({case.goal[0]:g}, {case.goal[1]:g})"
 
@@ -127,7 +128,7 @@ def slope_effect(setups: Sequence[Setup]) -> float:
     return max(ratios) - 1
 
 
-def order_holds(case: Case, routes: Routes) -> dict[str, bool]:
+def order_holds(case: PaperCase, routes: Routes) -> dict[str, bool]:
     """Which of the paper's effects the routes of a case show."""
     seconds = {name: route.seconds for name, route in routes.items()}
     angle, distance, hybrid = (seconds[str(choice)] for choice in (ANGLE, DISTANCE, HYBRID))

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.paper.cases import CASES, OTHER_READINGS, Case, Place, make_rules, make_vehicle, stand
+from gcs_windplan.paper.cases import CASES, OTHER_READINGS, PaperCase, PlanePoint, make_rules, make_vehicle, stand
 from gcs_windplan.paper.flying import Route, find_route, shape_route
 from gcs_windplan.paper.graphs import SPACING, THIRTY_SIX, TWENTY, lay_roadmap, lay_uniform
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID, TIME
@@ -33,10 +33,10 @@ _EQUAL: Final = 1e-9  # of a time: rounding
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trial:
+class TrialFlight:
     """One start, goal, field and graph: the routes by cost, and the shaped time [s]; no routes where none exists."""
 
-    case: Case
+    case: PaperCase
     graph: str
     routes: dict[CostChoice, Route]
     shaped: float = np.inf
@@ -56,7 +56,7 @@ class Trial:
         return min(route.seconds for choice, route in self.routes.items() if choice != TIME)
 
 
-Test = Callable[[Trial], bool]
+Test = Callable[[TrialFlight], bool]
 
 
 def _less(first: CostChoice, second: CostChoice) -> Test:
@@ -73,18 +73,18 @@ HYBRID_WINS: Final = _less(HYBRID, DISTANCE)
 HYBRID_NO_WORSE: Final = _either(HYBRID, ANGLE)
 
 
-def as_printed(trial: Trial) -> bool:
+def as_printed(trial: TrialFlight) -> bool:
     """Whether a trial shows all that the paper says of its case."""
     table_1 = ANGLE_LOSES if trial.case.number == "2" else ANGLE_WINS
     return table_1(trial) and HYBRID_WINS(trial) and (trial.case.number != "2" or HYBRID_NO_WORSE(trial))
 
 
-def time_wins_on_graph(trial: Trial) -> bool:
+def time_wins_on_graph(trial: TrialFlight) -> bool:
     """Whether `time` beats or equals the other costs before its route is shaped."""
     return trial.seconds(TIME) <= trial.best_other * (1 + _EQUAL)
 
 
-def time_wins(trial: Trial) -> bool:
+def time_wins(trial: TrialFlight) -> bool:
     """Whether the shaped route of `time` beats or equals the other costs."""
     return trial.shaped <= trial.best_other * (1 + _EQUAL)
 
@@ -109,14 +109,16 @@ _GROUPS: Final[tuple[tuple[str, Test], ...]] = (
 )
 
 
-def make_pairs(every: int = 1) -> list[tuple[Place, Place]]:
+def make_pairs(every: int = 1) -> list[tuple[PlanePoint, PlanePoint]]:
     """Starts and goals on a grid of places, or every so-manieth of them."""
     places = [(east, north) for east in PLACES for north in PLACES]
     pairs = [(a, b) for a in places for b in places if np.hypot(a[0] - b[0], a[1] - b[1]) >= APART]
     return pairs[::every]
 
 
-def sweep(terrain: Dem, pairs: Sequence[tuple[Place, Place]], seeds: Sequence[int] = SEEDS) -> list[Trial]:
+def sweep(
+    terrain: Dem, pairs: Sequence[tuple[PlanePoint, PlanePoint]], seeds: Sequence[int] = SEEDS
+) -> list[TrialFlight]:
     """All trials."""
     exact = make_rules(terrain)
     sites = stand(exact, np.array(sorted({place for pair in pairs for place in pair})))
@@ -142,25 +144,25 @@ def _graphs(exact: Clearance, sites: np.ndarray, seeds: Sequence[int]) -> Iterat
 def _trials(
     graph: str,
     windy: WindyVeil,
-    case: Case,
+    case: PaperCase,
     vehicle: Vehicle,
     exact: Clearance,
-    pairs: Sequence[tuple[Place, Place]],
-) -> Iterator[Trial]:
+    pairs: Sequence[tuple[PlanePoint, PlanePoint]],
+) -> Iterator[TrialFlight]:
     for start, goal in pairs:
-        flown = Case(case.number, case.reading, case.wind, start, goal)
+        flown = PaperCase(case.number, case.reading, case.wind, start, goal)
         try:
             routes = {choice: find_route(windy, choice, flown, vehicle) for choice in _CHOICES}
         except NoRouteError:
-            yield Trial(flown, graph, {})
+            yield TrialFlight(flown, graph, {})
             continue
-        trial = Trial(flown, graph, routes, routes[TIME].seconds)
+        trial = TrialFlight(flown, graph, routes, routes[TIME].seconds)
         if not time_wins_on_graph(trial):  # elsewhere shaping, which is never slower, cannot change the verdict
-            trial = Trial(flown, graph, routes, shape_route(routes[TIME], exact, case.wind, vehicle).seconds)
+            trial = TrialFlight(flown, graph, routes, shape_route(routes[TIME], exact, case.wind, vehicle).seconds)
         yield trial
 
 
-def frequency_table(trials: Sequence[Trial]) -> Table:
+def frequency_table(trials: Sequence[TrialFlight]) -> Table:
     """In how many of the trials each effect holds, by case and graph."""
     graphs = tuple(dict.fromkeys(trial.graph for trial in trials))
     rows = []
@@ -183,7 +185,7 @@ def frequency_table(trials: Sequence[Trial]) -> Table:
     )
 
 
-def expansion_table(trials: Sequence[Trial]) -> Table:
+def expansion_table(trials: Sequence[TrialFlight]) -> Table:
     """On how many of the flights the PRM graph needs fewer expansions than the uniform one, by cost."""
     uniform = {_flight(trial): trial for trial in trials if trial.graph == UNIFORM}
     both = [(trial, uniform[_flight(trial)]) for trial in trials if trial.graph == PRM and trial.routes]
@@ -200,7 +202,7 @@ def expansion_table(trials: Sequence[Trial]) -> Table:
     )
 
 
-def in_short(trials: Sequence[Trial]) -> str:
+def in_short(trials: Sequence[TrialFlight]) -> str:
     """In how many of all trials everything shows that the paper says of its case, in words."""
     parts = []
     for group, belongs in _GROUPS:
@@ -209,7 +211,7 @@ def in_short(trials: Sequence[Trial]) -> str:
     return ", ".join(parts)
 
 
-def defeats(trials: Sequence[Trial]) -> list[str]:
+def defeats(trials: Sequence[TrialFlight]) -> list[str]:
     """Where the shaped route of `time` was beaten, in words."""
     return [
         f"{trial.case.title}, {trial.graph}, {trial.case.start} to {trial.case.goal}:"
@@ -219,7 +221,7 @@ def defeats(trials: Sequence[Trial]) -> list[str]:
     ]
 
 
-def _flight(trial: Trial) -> tuple[str, Place, Place]:
+def _flight(trial: TrialFlight) -> tuple[str, PlanePoint, PlanePoint]:
     return trial.case.title, trial.case.start, trial.case.goal
 
 
@@ -227,7 +229,7 @@ def seed_table(terrain: Dem, seeds: Sequence[int]) -> Table:
     """On how many roadmaps the main choices show each effect."""
     exact, vehicle = make_rules(terrain), make_vehicle()
     sites = stand(exact, np.array(sorted({place for case in CASES for place in (case.start, case.goal)})))
-    trials: list[Trial] = []
+    trials: list[TrialFlight] = []
     for seed in seeds:
         veil = lay_roadmap(exact, sites, seed)
         for case in CASES:

@@ -13,10 +13,10 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.paper.cases import AREA, CASES, CELL, HILLS, Case, make_rules
+from gcs_windplan.paper.cases import AREA, CASES, CELL, HILLS, PaperCase, make_rules
 from gcs_windplan.paper.flying import sites_of
 from gcs_windplan.paper.graphs import lay_roadmap, lay_uniform
-from gcs_windplan.png import png_bytes
+from gcs_windplan.report.png import png_bytes
 from gcs_windplan.terrain import Dem
 
 _NODES: Final = {"uniform": ("#0051a2", "o"), "PRM": ("#a3195b", "D")}
@@ -37,7 +37,7 @@ def draw_landscape(terrain: Dem, dpi: int = 150) -> bytes:
         nodes = veil.points[len(sites) :]
         axes.scatter(*nodes.T, s=9, c=colour, marker=marker, lw=0, depthshade=False, zorder=3)
         _draw_sites(axes, terrain, case)
-        _dress(axes, f"({'ab'[i]}) {name} graph, {veil.size} nodes")
+        _style_axes(axes, f"({'ab'[i]}) {name} graph, {veil.size} nodes")
     figure.legend(handles=_legend(), loc="lower center", ncols=4, frameon=False, fontsize=10.5)
     return png_bytes(figure, dpi)
 
@@ -64,7 +64,7 @@ def _triangles(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
     return both.reshape(-1, 3, 3)
 
 
-def _draw_sites(axes: Any, terrain: Dem, case: Case) -> None:
+def _draw_sites(axes: Any, terrain: Dem, case: PaperCase) -> None:
     """Start and goal as pins with their names."""
     for place, word, colour in ((case.start, "start", _START), (case.goal, "goal", _GOAL)):
         ground = float(terrain.heights_at(np.array([place]))[0])
@@ -73,7 +73,7 @@ def _draw_sites(axes: Any, terrain: Dem, case: Case) -> None:
         axes.text(*place, ground + 0.50, word, fontsize=11, fontweight="bold", ha="center", zorder=7)
 
 
-def _dress(axes: Any, title: str) -> None:
+def _style_axes(axes: Any, title: str) -> None:
     """View, proportions and labels."""
     top = max(hill.height for hill in HILLS) + 0.25
     axes.set(xlim=(-2, 2), ylim=(-2, 2), zlim=(0, top))

@@ -8,9 +8,10 @@ from typing import Final
 from gcs_windplan.paper.cases import AIRSPEED, CASES, HILLS, VEIL_HEIGHT, make_rules
 from gcs_windplan.paper.comparison import Setup, digits, key_of, order_holds, slope_effect
 from gcs_windplan.paper.flying import sites_of
-from gcs_windplan.paper.frequency import APART, PLACES, Trial, defeats, in_short
+from gcs_windplan.paper.frequency import APART, PLACES, TrialFlight, defeats, in_short
 from gcs_windplan.paper.graphs import EIGHT, ROADMAP, SEED, SPACING, lay_uniform
 from gcs_windplan.paper.published import PAPER
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.paper.tables import Table
 from gcs_windplan.terrain import Dem
 
@@ -66,7 +67,7 @@ nearly all nodes, and its heuristic samples the wind on the way to the goal.
 """
 
 
-def write_report(terrain: Dem, setups: Sequence[Setup], tables: dict[str, Table], trials: Sequence[Trial]) -> str:
+def write_report(terrain: Dem, setups: Sequence[Setup], tables: dict[str, Table], trials: Sequence[TrialFlight]) -> str:
     """The whole report. `tables` by name: table_1, table_1_other, table_2, processing, frequency, seeds, expansion."""
     parts = [
         _HEAD,
@@ -99,7 +100,7 @@ def _choices(terrain: Dem) -> str:
     uniform = lay_uniform(rules, sites_of(rules, CASES))
     starts, ends = uniform.points[uniform.pairs[:, 0]], uniform.points[uniform.pairs[:, 1]]
     exact = uniform.flags != 0
-    sampled = make_rules(terrain, "paper").breaches(starts, ends) != 0
+    sampled = make_rules(terrain, SampledTest()).breaches(starts, ends) != 0
     ways = "; ".join(key_of(case) for case in CASES)
     return f"""\
 ## Choices
@@ -147,7 +148,7 @@ def _verdict(setups: Sequence[Setup]) -> str:
     return "\n".join(lines)
 
 
-def _counted(trials: Sequence[Trial]) -> str:
+def _counted(trials: Sequence[TrialFlight]) -> str:
     """What the counts say, and where `time` was beaten, if anywhere."""
     found = defeats(trials)
     beaten = "is beaten in none of these flights." if not found else "is beaten in:\n"

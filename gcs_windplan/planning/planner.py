@@ -297,8 +297,8 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
         if strongest > request.vehicle.airspeed / 2:
             text += f"; and in wind above half of the airspeed (here up to {strongest:.1f} m/s) zig-zag seems to pay"
         notes.append(f"{text}. Plan with `triangle` to fly.")
-    if request.collision_test == "paper":
-        notes.append("the collision test `paper` samples: a leg may pass through a thin ridge. Fly with `exact`.")
+    if request.collision_test is not None:
+        notes.append(request.collision_test.note)
     lost = [f"'{area.name}'" for area in request.fence if area.heights_lost]
     if lost:
         text = f"the fence holds {', '.join(lost)} in plan only, without floor and ceiling"

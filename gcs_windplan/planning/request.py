@@ -131,7 +131,7 @@ class Request:
     margin: float | None = None
     obstacles: Obstacles | None = None
     airspace: Airspace = field(default_factory=Airspace)
-    collision_test: CollisionTest = "exact"
+    collision_test: CollisionTest | None = None
     departure: datetime | None = None
     finish: Finish = "land"
     return_height: float = 15.0

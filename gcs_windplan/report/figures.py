@@ -1,4 +1,4 @@
-"""A mission's sums as figures to read, against their limits, and the differences of two missions."""
+"""A mission's totals as figures to read, against their limits, and the differences of two missions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Good = Literal["less", "more", ""]
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class KeyFigure:
     """One figure: what it is, its text and unit, what it is measured against, and whether it breaks that.
 
     `value` and `show_change` are for the difference to another mission's figure; `good` says which way is better.
@@ -37,71 +37,73 @@ class Figure:
 class Change:
     """One figure of two missions, side by side, and the second's difference to the first."""
 
-    first: Figure
-    second: Figure
+    first: KeyFigure
+    second: KeyFigure
     text: str
     percent: str
     judgement: Literal["better", "worse", ""]
 
 
-def figures(assessment: Assessment) -> list[Figure]:
-    """The sums of a mission."""
-    sums = assessment.sums
-    climb, descent = words.number(sums.climb), words.number(sums.descent)
+def figures(assessment: Assessment) -> list[KeyFigure]:
+    """The totals of a mission."""
+    totals = assessment.totals
+    climb, descent = words.number(totals.climb), words.number(totals.descent)
     listed = [
-        Figure(
-            "Time", words.clock(sums.seconds), "min",
-            f"take-off {words.clock(sums.takeoff_seconds)} and landing {words.clock(sums.landing_seconds)} counted",
-            not math.isfinite(sums.seconds), sums.seconds, "less", words.clock_difference,
+        KeyFigure(
+            "Time", words.clock(totals.seconds), "min",
+            f"take-off {words.clock(totals.takeoff_seconds)} and landing {words.clock(totals.landing_seconds)} counted",
+            not math.isfinite(totals.seconds), totals.seconds, "less", words.clock_difference,
         ),
-        _figure("Length", sums.length / 1000, "km", 2, f"climbs {climb} m, descends {descent} m"),
+        _figure("Length", totals.length / 1000, "km", 2, f"climbs {climb} m, descends {descent} m"),
     ]  # fmt: skip
     return [*listed, *_battery(assessment), *_heights(assessment), *_winds(assessment)]
 
 
 def _figure(
     label: str, value: float | None, unit: str, digits: int, note: str = "", broken: bool = False, good: Good = ""
-) -> Figure:
+) -> KeyFigure:
     def show_change(change: float) -> str:
         return f"{words.number(change, digits, sign=True)} {unit}"
 
-    return Figure(label, words.number(value, digits), unit, note, broken, value, good, show_change)
+    return KeyFigure(label, words.number(value, digits), unit, note, broken, value, good, show_change)
 
 
-def _battery(assessment: Assessment) -> list[Figure]:
+def _battery(assessment: Assessment) -> list[KeyFigure]:
     """Energy and what is left, where the airframe is known."""
-    sums = assessment.sums
-    if sums.energy is None:
-        return [Figure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
-    energy = _figure("Energy", words.watt_hours(sums.energy), "Wh", 0, "take-off and landing counted", good="less")
+    totals = assessment.totals
+    if totals.energy is None:
+        return [KeyFigure("Energy", words.NOTHING, "", "no airframe given: battery not judged")]
+    energy = _figure("Energy", words.watt_hours(totals.energy), "Wh", 0, "take-off and landing counted", good="less")
     broken = _found(assessment, "reserve", "battery", "reserve-time")
-    note = "" if sums.reserve is None else f"reserve {words.percent(sums.reserve)} %"
-    left = Figure(
-        "Battery left", words.percent(sums.left), "%", note, broken,
-        None if sums.left is None else sums.left * 100, "more",
+    note = "" if totals.reserve is None else f"reserve {words.percent(totals.reserve)} %"
+    left = KeyFigure(
+        "Battery left", words.percent(totals.left), "%", note, broken,
+        None if totals.left is None else totals.left * 100, "more",
         lambda change: words.number(change, 1, sign=True) + " points", relative=False,
     )  # fmt: skip
     return [energy, left]
 
 
-def _heights(assessment: Assessment) -> list[Figure]:
+def _heights(assessment: Assessment) -> list[KeyFigure]:
     """The smallest and the largest height above ground."""
-    sums, limits = assessment.sums, assessment.limits
+    totals, limits = assessment.totals, assessment.limits
     low, high = _found(assessment, "clearance", "terrain"), _found(assessment, "height")
     return [
-        _figure("Smallest clearance", sums.clearance, "m", 1, _limit("at least", limits.clearance, "m"), low),
-        _figure("Largest height", sums.height, "m", 1, _limit("at most", limits.max_height, "m", "above ground"), high),
+        _figure("Smallest clearance", totals.clearance, "m", 1, _limit("at least", limits.clearance, "m"), low),
+        _figure(
+            "Largest height", totals.height, "m", 1, _limit("at most", limits.max_height, "m", "above ground"), high
+        ),
     ]
 
 
-def _winds(assessment: Assessment) -> list[Figure]:
+def _winds(assessment: Assessment) -> list[KeyFigure]:
     """The strongest wind and gust met."""
-    sums, limits = assessment.sums, assessment.limits
+    totals, limits = assessment.totals, assessment.limits
     strong = _found(assessment, "wind")
-    listed = [_figure("Strongest wind", sums.wind, "m/s", 1, _limit("at most", limits.wind, "m/s"), strong)]
-    if sums.gust is not None:
+    listed = [_figure("Strongest wind", totals.wind, "m/s", 1, _limit("at most", limits.wind, "m/s"), strong)]
+    if totals.gust is not None:
         strong = _found(assessment, "gust")
-        listed.append(_figure("Strongest gust", sums.gust, "m/s", 1, _limit("at most", limits.gust, "m/s"), strong))
+        listed.append(_figure("Strongest gust", totals.gust, "m/s", 1, _limit("at most", limits.gust, "m/s"), strong))
     return listed
 
 
@@ -118,11 +120,11 @@ def changes(first: Assessment, second: Assessment) -> list[Change]:
     """The figures of two missions side by side."""
     mine, yours = ({figure.label: figure for figure in figures(one)} for one in (first, second))
     labels = [*mine, *(label for label in yours if label not in mine)]
-    missing = {label: Figure(label, words.NOTHING, "") for label in labels}
+    missing = {label: KeyFigure(label, words.NOTHING, "") for label in labels}
     return [_change(mine.get(label, missing[label]), yours.get(label, missing[label])) for label in labels]
 
 
-def _change(first: Figure, second: Figure) -> Change:
+def _change(first: KeyFigure, second: KeyFigure) -> Change:
     a, b = first.value, second.value
     if a is None or b is None or not math.isfinite(a) or not math.isfinite(b) or first.show_change is None:
         return Change(first, second, words.NOTHING, words.NOTHING, "")
@@ -137,10 +139,10 @@ def _change(first: Figure, second: Figure) -> Change:
 def gain(first: Assessment, second: Assessment) -> str:
     """What the second mission gains over the first in time and energy, a sentence."""
     parts = []
-    a, b = first.sums.seconds, second.sums.seconds
+    a, b = first.totals.seconds, second.totals.seconds
     if math.isfinite(a) and math.isfinite(b) and a > 0:
         parts.append(_gained("time", f"{words.clock(abs(b - a))} min", (b - a) / a))
-    a, b = first.sums.energy or math.nan, second.sums.energy or math.nan
+    a, b = first.totals.energy or math.nan, second.totals.energy or math.nan
     if math.isfinite(a) and math.isfinite(b):
         parts.append(_gained("energy", f"{words.number(words.watt_hours(abs(b - a)), 1)} Wh", (b - a) / a))
     return f"B takes {' and '.join(parts)} {'than' if '%' in parts[-1] else 'as'} A." if parts else ""

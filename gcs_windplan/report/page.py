@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import version
@@ -16,10 +15,11 @@ from markupsafe import Markup
 
 from gcs_windplan.assessment import Assessment, Finding
 from gcs_windplan.errors import InputError
+from gcs_windplan.json_text import json_text
 from gcs_windplan.report import words
 from gcs_windplan.report.figures import changes, figures, gain
 from gcs_windplan.report.places import place_of
-from gcs_windplan.report.three import Library, script_hash, three_js
+from gcs_windplan.report.three import Script, script_hash, three_js
 from gcs_windplan.report.tracks import page_numbers
 
 _SCRIPTS = ("drawing.js", "charts.js", "map.js", "scene.js", "page.js")
@@ -80,7 +80,7 @@ def _finding(letter: str, i: int, assessment: Assessment, finding: Finding) -> d
 
 def _json(value: Any) -> Markup:
     """JSON that can stand inside a script element: nothing in it ends the element or begins a comment."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    text = json_text(value, indent=None)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
@@ -103,7 +103,7 @@ def _dress() -> dict[str, Any]:
     }
 
 
-def _policy(style: str, script: str, library: Library | None) -> Markup:
+def _policy(style: str, script: str, library: Script | None) -> Markup:
     """Nothing from anywhere: only pictures within the page, and the style and scripts that hash to what was written."""
     scripts = [script_hash(script.encode("utf-8"))] + ([library.hash] if library else [])
     styles = "sha256-" + base64.b64encode(hashlib.sha256(style.encode("utf-8")).digest()).decode("ascii")
@@ -117,7 +117,7 @@ def _policy(style: str, script: str, library: Library | None) -> Markup:
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("gcs_windplan", "review"),
+        loader=PackageLoader("gcs_windplan", "report"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

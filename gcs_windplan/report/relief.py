@@ -171,8 +171,11 @@ def contour_step(relief: float) -> int:
     return next((step for step in _STEPS if step * _LINES >= relief), _STEPS[-1])
 
 
-def shade(ground: Ground, lines: bool = True) -> FloatArray:
-    """Colours (rows, columns, 4) from 0 to 1, row 0 in the south; clear where the ground is not known."""
+def shade(ground: Ground, contours: float | None = None) -> FloatArray:
+    """Colours (rows, columns, 4) from 0 to 1, row 0 in the south; clear where the ground is not known.
+
+    Contour lines lie `contours` [m] apart, by default as it suits; none at 0.
+    """
     known = np.isfinite(ground.heights)
     filled = _filled(ground.heights)
     cell = (ground.east - ground.west) / (filled.shape[1] - 1)
@@ -184,8 +187,9 @@ def shade(ground: Ground, lines: bool = True) -> FloatArray:
     stops = np.linspace(0, 1, len(_TINTS))
     tint = np.stack([np.interp(share, stops, _TINTS[:, i]) for i in range(3)], axis=-1)
     colours = tint * (0.52 + 0.55 * light[..., None])
-    if lines and relief > 0:
-        colours *= 1 - _contours(filled, contour_step(relief))[..., None]
+    step = contour_step(relief) if contours is None else contours
+    if step > 0 and relief > 0:
+        colours *= 1 - _contours(filled, step)[..., None]
     return np.dstack([np.clip(colours, 0, 1), known.astype(np.float64)])
 
 
@@ -201,7 +205,7 @@ def _lit(slope_east: FloatArray, slope_north: FloatArray) -> FloatArray:
     return lit
 
 
-def _contours(heights: FloatArray, step: int) -> FloatArray:
+def _contours(heights: FloatArray, step: float) -> FloatArray:
     """How dark the contour lines are, 0 to 1: about a pixel wide however steep, none where it is nearly flat."""
     slope_north, slope_east = np.gradient(heights)
     steep = np.maximum(np.hypot(slope_east, slope_north), 1e-9)  # [m a pixel]

@@ -13,7 +13,7 @@ _VIEWER_STARTS: Final = "init();"  # the last words of trimesh's script; what st
 
 
 @dataclass(frozen=True, slots=True)
-class Library:
+class Script:
     """A script to be carried in a page: packed (gzip, base64), and the hash by which the page's policy lets it run."""
 
     packed: str
@@ -21,7 +21,7 @@ class Library:
 
 
 @cache
-def three_js() -> Library | None:
+def three_js() -> Script | None:
     """three.js as packed text; None if this trimesh does not carry it where it is looked for."""
     import trimesh  # 0.6 s that only pages cost
     from trimesh.viewer.notebook import scene_to_html
@@ -33,7 +33,7 @@ def three_js() -> Library | None:
         return None
     code = text.encode("utf-8")
     packed = gzip.compress(code, compresslevel=9, mtime=0)
-    return Library(base64.b64encode(packed).decode("ascii"), script_hash(code))
+    return Script(base64.b64encode(packed).decode("ascii"), script_hash(code))
 
 
 def script_hash(code: bytes) -> str:

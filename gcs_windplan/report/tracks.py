@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import math
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -13,6 +12,7 @@ from numpy.typing import ArrayLike
 from gcs_windplan.arrays import IntArray
 from gcs_windplan.assessment import Assessment
 from gcs_windplan.geo.frame import LocalFrame
+from gcs_windplan.json_text import rounded, rounded_number
 from gcs_windplan.report.places import place_of
 from gcs_windplan.report.relief import Ground, contour_step, ground_of, moved, picture
 
@@ -42,21 +42,21 @@ def _mission(assessment: Assessment, frame: LocalFrame) -> Numbers:
     if assessment.frame != frame and len(places):
         places = frame.to_local(profile.latitude_deg[kept], profile.longitude_deg[kept])
     columns: Numbers = {
-        "d": _rounded(profile.distance[kept], 1),
-        "t": _rounded(profile.seconds[kept], 1),
-        "e": _rounded(places[:, 0], 1),
-        "n": _rounded(places[:, 1], 1),
-        "z": _rounded(profile.altitude[kept], 1),
-        "g": _rounded(profile.ground[kept], 1),
-        "along": _rounded(profile.wind_along[kept], 2),
-        "across": _rounded(profile.wind_across[kept], 2),
-        "we": _rounded(profile.wind_east[kept], 2),
-        "wn": _rounded(profile.wind_north[kept], 2),
-        "over": _rounded(profile.ground_speed[kept], 2),
-        "air": _rounded(profile.airspeed[kept], 2),
+        "d": rounded(profile.distance[kept], 1),
+        "t": rounded(profile.seconds[kept], 1),
+        "e": rounded(places[:, 0], 1),
+        "n": rounded(places[:, 1], 1),
+        "z": rounded(profile.altitude[kept], 1),
+        "g": rounded(profile.ground[kept], 1),
+        "along": rounded(profile.wind_along[kept], 2),
+        "across": rounded(profile.wind_across[kept], 2),
+        "we": rounded(profile.wind_east[kept], 2),
+        "wn": rounded(profile.wind_north[kept], 2),
+        "over": rounded(profile.ground_speed[kept], 2),
+        "air": rounded(profile.airspeed[kept], 2),
         "leg": profile.leg[kept].tolist(),
-        "power": None if profile.power is None else _rounded(profile.power[kept], 0),
-        "left": None if profile.left is None else _rounded(100 * profile.left[kept], 2),
+        "power": None if profile.power is None else rounded(profile.power[kept], 0),
+        "left": None if profile.left is None else rounded(100 * profile.left[kept], 2),
     }
     return {
         "name": assessment.name,
@@ -65,7 +65,7 @@ def _mission(assessment: Assessment, frame: LocalFrame) -> Numbers:
         "findings": _findings(assessment, frame),
         "clearance": limits.clearance,
         "maxHeight": limits.max_height,
-        "reserve": None if assessment.sums.reserve is None else _one(100 * assessment.sums.reserve, 1),
+        "reserve": None if assessment.totals.reserve is None else rounded_number(100 * assessment.totals.reserve, 1),
     }
 
 
@@ -93,12 +93,9 @@ def _stops(assessment: Assessment, frame: LocalFrame) -> list[list[Any]]:
     """Each stop: number, label, east, north, altitude, distance, seconds."""
     places = moved(np.array([(s.east, s.north) for s in assessment.stops]).reshape(-1, 2), assessment.frame, frame)
     return [
-        [
-            stop.number, stop.label, _one(place[0], 1), _one(place[1], 1), _one(stop.altitude, 1),
-            _one(stop.distance, 1), _one(stop.seconds, 1),
-        ]
+        [stop.number, stop.label, *rounded([*place, stop.altitude, stop.distance, stop.seconds], 1)]
         for stop, place in zip(assessment.stops, places, strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def _findings(assessment: Assessment, frame: LocalFrame) -> list[Numbers]:
@@ -108,7 +105,7 @@ def _findings(assessment: Assessment, frame: LocalFrame) -> list[Numbers]:
         place = place_of(assessment, finding)
         spot: list[Any] = [None, None]
         if place.latitude_deg is not None and place.longitude_deg is not None:
-            spot = _rounded(frame.to_local(place.latitude_deg, place.longitude_deg)[0], 1)
+            spot = rounded(frame.to_local(place.latitude_deg, place.longitude_deg)[0], 1)
         listed.append(
             {
                 "severity": finding.severity,
@@ -133,22 +130,22 @@ def _map(assessments: Sequence[Assessment], ground: Ground) -> Numbers:
                 "name": outline.name,
                 "kind": outline.kind,
                 "corners": (corners + 0.0).tolist(),
-                "floor": _one(outline.floor, 1),
-                "ceiling": _one(outline.ceiling, 1),
+                "floor": rounded_number(outline.floor, 1),
+                "ceiling": rounded_number(outline.ceiling, 1),
             }
     rally = {place for one in assessments for place in one.rally}
     return {
-        "west": _one(ground.west, 1),
-        "south": _one(ground.south, 1),
-        "east": _one(ground.east, 1),
-        "north": _one(ground.north, 1),
+        "west": rounded_number(ground.west, 1),
+        "south": rounded_number(ground.south, 1),
+        "east": rounded_number(ground.east, 1),
+        "north": rounded_number(ground.north, 1),
         "picture": picture(ground.resampled(_PIXELS, smooth=True)),
         "contours": contour_step(ground.relief),
-        "wind": [_rounded(row, 2) for row in wind],
-        "windHeight": _one(first.ground.wind_height, 1),
-        "windSeconds": _one(first.ground.wind_seconds, 0),
+        "wind": [rounded(row, 2) for row in wind],
+        "windHeight": rounded_number(first.ground.wind_height, 1),
+        "windSeconds": rounded_number(first.ground.wind_seconds, 0),
         "areas": list(areas.values()),
-        "rally": [_rounded(first.frame.to_local(*place)[0], 1) for place in sorted(rally)],
+        "rally": [rounded(first.frame.to_local(*place)[0], 1) for place in sorted(rally)],
     }
 
 
@@ -164,7 +161,7 @@ def _mesh(ground: Ground, assessments: Sequence[Assessment]) -> Numbers:
     return {
         "rows": whole.shape[0],
         "columns": whole.shape[1],
-        "lowest": _one(lowest, 1),
+        "lowest": rounded_number(lowest, 1),
         "step": step,
         "heights": base64.b64encode(whole.tobytes()).decode("ascii"),
         "exaggeration": _exaggeration(ground.size, highest - lowest),
@@ -174,14 +171,3 @@ def _mesh(ground: Ground, assessments: Sequence[Assessment]) -> Numbers:
 def _exaggeration(size: float, height: float) -> float:
     """How much heights are stretched in the scene: not at all in mountains, up to three times in the plain."""
     return float(np.clip(round(2 * 0.16 * size / max(height, 1.0)) / 2, 1.0, 3.0))
-
-
-def _rounded(values: ArrayLike, digits: int) -> list[Any]:
-    """Numbers for JSON: rounded, whole ones as such, null where not finite."""
-    with np.errstate(over="ignore", invalid="ignore"):  # the largest numbers have no digits to round
-        listed = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
-    return [None if not math.isfinite(x) else int(x) if x == int(x) else x for x in listed]
-
-
-def _one(value: float | None, digits: int) -> Any:
-    return None if value is None else _rounded([value], digits)[0]

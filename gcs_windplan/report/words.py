@@ -101,11 +101,11 @@ def counts(findings: Sequence[Finding]) -> str:
 
 def summary(assessment: Assessment) -> dict[str, str]:
     """Each chart in a sentence, for those who do not see it; empty where there is nothing to show."""
-    profile, sums, name = assessment.profile, assessment.sums, assessment.name
+    profile, totals, name = assessment.profile, assessment.totals, assessment.name
     power, left = profile.power, profile.left
     return {
-        "heights": f"{name}: over {number(sums.distance / 1000, 2)} km, altitude {_span(profile.altitude, 0)} m above"
-        f" mean sea level, {number(sums.clearance, 1)} to {number(sums.height, 1)} m above ground.",
+        "heights": f"{name}: over {number(totals.distance / 1000, 2)} km, altitude {_span(profile.altitude, 0)} m above"
+        f" mean sea level, {number(totals.clearance, 1)} to {number(totals.height, 1)} m above ground.",
         "wind": f"{name}: along the route {_span(profile.wind_along, 1)} m/s, positive from behind; across"
         f" {_span(profile.wind_across, 1)} m/s, positive to the right.",
         "speed": f"{name}: ground speed {_span(profile.ground_speed, 1)} m/s,"

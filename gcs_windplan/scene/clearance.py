@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray
 from gcs_windplan.scene.airspace import Airspace
 
 if TYPE_CHECKING:
-    from gcs_windplan.terrain import Dem, Extent, MeshTerrain, Obstacles, Terrain
+    from gcs_windplan.terrain import Extent, Obstacles, Terrain
 
 TOO_LOW: Final = 1
 UNKNOWN_GROUND: Final = 2
@@ -31,10 +31,20 @@ BREACHES: Final = {
     TOO_WINDY: "wind limit",
 }
 
-CollisionTest: TypeAlias = Literal["exact", "paper"]
-
-_PAPER_SAMPLES = 4  # of a leg, on the length of a terrain's cell
 _SLACK = 1e-6  # [m] a node laid at exactly the clearance is clear
+
+
+class CollisionTest(Protocol):
+    """Another way than the exact one to find the legs that are too low, with a note for whoever flies by it."""
+
+    @property
+    def note(self) -> str:
+        """What a pilot must know of it."""
+        ...
+
+    def too_low(self, terrain: Terrain, starts: FloatArray, ends: FloatArray) -> BoolArray:
+        """Which legs (n, 3) are too low, shape (n,)."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +55,7 @@ class Clearance:
     obstacles keep their own margins. All tests are exact: nothing is sampled. Legs stay inside `area`, if there is one:
     beyond it neither wind nor ground need be known.
 
-    With the `test` `paper` a leg is too low only where the paper's sampled area test (8) finds it to touch a triangle
-    of the ground; `minimum` then only lifts nodes above obstacles. It lets legs through thin ridges: for comparison.
+    With a `test` of its own a leg is too low only where that says so; `minimum` then only lifts nodes above obstacles.
     """
 
     terrain: Terrain
@@ -54,7 +63,7 @@ class Clearance:
     maximum: float = np.inf
     obstacles: Obstacles | None = None
     airspace: Airspace = field(default_factory=Airspace)
-    test: CollisionTest = "exact"
+    test: CollisionTest | None = None
     area: Extent | None = None
 
     def breaches(self, starts: FloatArray, ends: FloatArray) -> FlagArray:
@@ -78,12 +87,9 @@ class Clearance:
 
     def _too_low(self, starts: FloatArray, ends: FloatArray, low: FloatArray) -> BoolArray:
         """Which legs (n, 3), whose smallest heights are `low` (n,), come too close to the ground."""
-        if self.test == "exact":
+        if self.test is None:
             return low < self.minimum - _SLACK
-        from gcs_windplan.terrain import sampled_collisions
-
-        step = self.terrain.resolution / _PAPER_SAMPLES
-        return sampled_collisions(cast("Dem | MeshTerrain", self.terrain), starts, ends, step)
+        return self.test.too_low(self.terrain, starts, ends)
 
     def lifted(self, places: FloatArray, height: float) -> FloatArray:
         """Points (n, 3) at a height over the ground [m], lifted above obstacles where they would be inside one."""

@@ -12,6 +12,5 @@ from .obstacles import Obstacles as Obstacles
 from .raster import read_dem as read_dem
 from .sample import SAMPLE_CENTRE as SAMPLE_CENTRE
 from .sample import sample_dem as sample_dem
-from .sampled import sampled_collisions as sampled_collisions
 from .surface import Extent as Extent
 from .surface import Terrain as Terrain

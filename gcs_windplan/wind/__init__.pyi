@@ -1,9 +1,5 @@
 from .analytic import Calm as Calm
 from .analytic import ConstantWind as ConstantWind
-from .analytic import Diverging as Diverging
-from .analytic import Jet as Jet
-from .analytic import JetReading as JetReading
-from .analytic import Rotation as Rotation
 from .field import Ground as Ground
 from .field import WindField as WindField
 from .forecast import Forecast as Forecast

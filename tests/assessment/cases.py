@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gcs_windplan.assessment import Assessment, Case, Finding, Limits, assess
+from gcs_windplan.assessment import Assessment, AssessmentLimits, Case, Finding, assess
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
 from gcs_windplan.terrain import Dem
@@ -81,7 +81,7 @@ def case(*items: MissionItem, mission: dict[str, Any] | None = None, **more: Any
         "vehicle_type": flown.vehicle_type,
         "pace": SWIFT,
         "cruise": 15.0,
-        "limits": Limits(),
+        "limits": AssessmentLimits(),
     }
     return Case(mission=flown, **{**known, **more})
 

@@ -42,8 +42,8 @@ def test_times_are_those_of_the_duration(autopilot):
     flown = case(*ITEMS, mission={"autopilot": autopilot}, pace=pace, wind=ConstantWind(3.0, -2.0))
     review = assess(flown)
     expected = duration_of(flown.mission, lambda starts, ends: np.tile([3.0, -2.0, 0.0], (len(starts), 1)), pace)
-    assert review.sums.seconds == pytest.approx(expected.total, abs=a_hundredth)
-    assert review.sums.takeoff_seconds == pytest.approx(expected.takeoff)
+    assert review.totals.seconds == pytest.approx(expected.total, abs=a_hundredth)
+    assert review.totals.takeoff_seconds == pytest.approx(expected.takeoff)
     measured = [leg.seconds - leg.hold for leg in expected.legs]
     assert [leg.seconds for leg in review.legs[: len(measured)]] == pytest.approx(measured, abs=a_hundredth)
 
@@ -64,7 +64,7 @@ def test_twelve_missions_as_a_real_arducopter_flew_them(shared_data):
                 "multicopter", pace, 10.0,
             )
         )  # fmt: skip
-        assert review.sums.seconds == pytest.approx(expected.total, abs=a_hundredth), flight["name"]
+        assert review.totals.seconds == pytest.approx(expected.total, abs=a_hundredth), flight["name"]
         en_route = math.fsum(leg.seconds for leg in review.legs if review.stops[leg.number].label != "return")
         holds = math.fsum(stop.hold for stop in review.stops if stop.label != "return")
         assert en_route + holds == pytest.approx(flight["total"], rel=0.011), flight["name"]
@@ -111,7 +111,7 @@ def test_wind_that_stops_it_is_not_flyable():
     assert (leg.leg, leg.severity) == (1, "danger")
     assert leg.value == pytest.approx(21.0)
     assert review.legs[0].seconds == math.inf
-    assert review.sums.seconds == math.inf
+    assert review.totals.seconds == math.inf
     assert math.isfinite(review.profile.seconds[-1])
 
 
@@ -185,12 +185,12 @@ def test_a_constant_draw_empties_the_battery_evenly():
     frame = airframe(watts=400.0)
     review = judged(at(0, 900), at(900, 900, 80, 10.0), at(0, 0), airframe=frame)
     level = math.fsum(leg.seconds for leg in review.legs) + 10.0
-    drawn = (review.stops[0].left - (1 - review.sums.energy / frame.battery.capacity)) * frame.battery.capacity
+    drawn = (review.stops[0].left - (1 - review.totals.energy / frame.battery.capacity)) * frame.battery.capacity
     density = 1.225 / air_density(GROUND + 80)
     assert drawn == pytest.approx(400.0 * level, rel=abs(density - 1) + 0.01)
     assert [stop.left for stop in review.stops] == sorted((stop.left for stop in review.stops), reverse=True)
-    assert review.sums.left == pytest.approx(review.stops[-1].left)
-    assert review.profile.left[-1] == pytest.approx(review.sums.left)
+    assert review.totals.left == pytest.approx(review.stops[-1].left)
+    assert review.profile.left[-1] == pytest.approx(review.totals.left)
 
 
 def test_the_hold_is_drawn_after_the_arrival():
@@ -229,7 +229,7 @@ def test_a_mission_over_the_date_line():
     review = assess(
         Case("line", mission, frame, flat(9000.0), Calm(), "ardupilot", "multicopter", SWIFT, 10.0, home_is_given=True)
     )
-    assert review.sums.distance == pytest.approx(1500, abs=0.01)
+    assert review.totals.distance == pytest.approx(1500, abs=0.01)
 
 
 def test_the_same_case_gives_the_same_assessment():

@@ -49,10 +49,10 @@ def test_a_plan_keeps_its_figures(gallery, name):
     assert [leg.seconds for leg in review.legs[: len(flown.legs)]] == pytest.approx(
         [leg.seconds - leg.hold for leg in flown.legs], abs=a_hundredth
     )
-    assert review.sums.seconds == pytest.approx(flown.total, abs=a_hundredth)
-    assert review.sums.clearance >= request.clearance - one_millimetre
+    assert review.totals.seconds == pytest.approx(flown.total, abs=a_hundredth)
+    assert review.totals.clearance >= request.clearance - one_millimetre
     assert [finding for finding in review.findings if finding.rule not in ("return", "reach", "height")] == []
     if plan.battery is not None:
-        assert review.sums.energy == pytest.approx(plan.battery.total, rel=0.03)
+        assert review.totals.energy == pytest.approx(plan.battery.total, rel=0.03)
         assert review.stops[-1].left == pytest.approx(plan.battery.left[-1], abs=0.03)
     assert math.isfinite(review.profile.seconds[-1])

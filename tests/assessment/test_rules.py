@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs_windplan.assessment import Limits, Source, assess
+from gcs_windplan.assessment import AssessmentLimits, Source, assess
 from gcs_windplan.errors import InputError, WindError
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Fence, FenceCircle, FencePolygon, Home, RallyPoint
@@ -47,15 +47,15 @@ one_metre = 1.0
 
 def test_clearance_over_a_ridge():
     """80 m above home over a ridge of 60 m: 20 m, right over its top."""
-    review = judged(at(2000, 0), terrain=ridge(), limits=Limits(clearance=30))
+    review = judged(at(2000, 0), terrain=ridge(), limits=AssessmentLimits(clearance=30))
     (finding,) = found(review, "clearance")
     assert (finding.severity, finding.item, finding.leg) == ("danger", 2, 1)
     assert (finding.value, finding.limit, finding.unit) == (pytest.approx(20, abs=one_millimetre), 30, "m")
     assert local(finding) == pytest.approx([1000, 0], abs=one_centimetre)
     assert finding.distance == pytest.approx(1000, abs=one_centimetre)
     assert "raise it there by 10 m" in finding.message
-    assert review.sums.clearance == pytest.approx(20, abs=one_millimetre)
-    assert found(judged(at(2000, 0), terrain=ridge(), limits=Limits(clearance=20)), "clearance") == []
+    assert review.totals.clearance == pytest.approx(20, abs=one_millimetre)
+    assert found(judged(at(2000, 0), terrain=ridge(), limits=AssessmentLimits(clearance=20)), "clearance") == []
 
 
 def test_below_the_ground_without_any_limit():
@@ -70,7 +70,7 @@ def test_clearance_and_height_are_those_of_dense_samples(seed, east, north, firs
     ground = float(dem.heights_at(np.zeros((1, 2)))[0])
     review = judged(
         at(300, 200, first), at(east, north, second), terrain=dem, mission={"home": Home(HOME.point, ground)},
-        limits=Limits(clearance=1000, max_height=1),
+        limits=AssessmentLimits(clearance=1000, max_height=1),
     )  # fmt: skip
     leg, start, end = review.legs[1], review.stops[1], review.stops[2]
     a, b = (np.array([stop.east, stop.north, stop.altitude]) for stop in (start, end))
@@ -96,7 +96,7 @@ def test_a_mission_raised_is_as_much_clearer(higher):
 
 
 def test_height_above_ground():
-    review = judged(at(0, 1000, 150), limits=Limits(max_height=120))
+    review = judged(at(0, 1000, 150), limits=AssessmentLimits(max_height=120))
     (finding,) = found(review, "height")
     assert (finding.value, finding.limit) == pytest.approx((150, 120))
     assert local(finding) == pytest.approx([0, 1000], abs=one_centimetre)
@@ -110,7 +110,7 @@ def test_ground_that_is_not_known():
     assert leaving.value == pytest.approx(1500, abs=one_metre)
     assert "by 1500.0 m" in leaving.message
     assert math.isnan(review.legs[1].clearance)
-    assert review.sums.clearance == pytest.approx(80)
+    assert review.totals.clearance == pytest.approx(80)
 
 
 def test_a_gap_in_the_ground():
@@ -124,21 +124,23 @@ def test_a_gap_in_the_ground():
 
 def test_a_fixed_wing_may_come_down_to_land():
     items = (at(0, 1000, 80), at(0, 300, 0, command=Command.NAV_LAND))
-    review = judged(*items, mission={"vehicle_type": "fixed-wing"}, limits=Limits(clearance=30))
+    review = judged(*items, mission={"vehicle_type": "fixed-wing"}, limits=AssessmentLimits(clearance=30))
     assert [finding.rule for finding in review.findings] == []
 
 
 def test_circles():
     """80 m above home, 150 m beside a ridge of 60 m: its circles of 150 m lead over the top."""
     turns = at(850, 0, 80, 3, 0, 150, command=Command.NAV_LOITER_TURNS)
-    review = judged(turns, terrain=ridge(), mission={"vehicle_type": "fixed-wing"}, limits=Limits(clearance=30))
+    review = judged(
+        turns, terrain=ridge(), mission={"vehicle_type": "fixed-wing"}, limits=AssessmentLimits(clearance=30)
+    )
     (finding,) = found(review, "circle")
     assert finding.value == pytest.approx(20, abs=0.1)
     assert "circles of 150 m" in finding.message
-    (turning,) = found(judged(turns, terrain=ridge(), limits=Limits(clearance=30)), "circle")
+    (turning,) = found(judged(turns, terrain=ridge(), limits=AssessmentLimits(clearance=30)), "circle")
     assert turning.value == pytest.approx(20, abs=0.1)
     waits = at(850, 0, 80, 3, 0, 150, command=Command.NAV_LOITER_TIME)
-    assert found(judged(waits, terrain=ridge(), limits=Limits(clearance=30)), "circle") == []
+    assert found(judged(waits, terrain=ridge(), limits=AssessmentLimits(clearance=30)), "circle") == []
 
 
 def test_obstacles():
@@ -253,11 +255,13 @@ def test_the_first_break_is_that_of_dense_samples(e0, n0, e1, n1):
 
 
 def test_wind_and_gusts_beyond_their_limits():
-    review = judged(at(0, 900), wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=Limits(wind=9, gust=12))
+    review = judged(
+        at(0, 900), wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=AssessmentLimits(wind=9, gust=12)
+    )
     wind, gust = found(review, "wind")[0], found(review, "gust")[0]
     assert (wind.value, gust.value) == pytest.approx((10, 14))
-    assert (review.sums.wind, review.sums.gust) == pytest.approx((10, 14))
-    still = Limits(wind=10, gust=14)
+    assert (review.totals.wind, review.totals.gust) == pytest.approx((10, 14))
+    still = AssessmentLimits(wind=10, gust=14)
     kept = judged(at(0, 900), RETURN, wind=ConstantWind(6, 8), gusts=(ConstantWind(14, 0),), limits=still)
     assert kept.verdict == "clear"
 
@@ -265,10 +269,10 @@ def test_wind_and_gusts_beyond_their_limits():
 def test_legs_in_a_row_make_one_finding_where_it_is_worst():
     """Wind from the south of 1 m/s and another for each 100 m to the north: legs 2 to 4 lead beyond 900 m."""
     review = judged(at(0, 600), at(0, 1200), at(0, 1500), at(0, 600), at(0, 0), RETURN, wind=Rising(),
-                    limits=Limits(wind=10))  # fmt: skip
+                    limits=AssessmentLimits(wind=10))  # fmt: skip
     (finding,) = found(review, "wind")
     assert finding.leg in (3, 4)
-    assert finding.value == pytest.approx(review.sums.wind)
+    assert finding.value == pytest.approx(review.totals.wind)
     assert finding.value == pytest.approx(16, abs=0.5)
     assert finding.message.startswith(f"legs 2 to 4 meet, at worst on leg {finding.leg} (to item {finding.leg + 1}),")
 
@@ -280,14 +284,14 @@ def test_members_are_looked_at_one_by_one():
     def windy(*members, robust=0.75):
         fields = tuple(ConstantWind(-speed, 0) for speed in members)
         return judged(at(500, 0), at(900, 0), RETURN, wind=calm, members=fields, robust=robust,
-                      limits=Limits(wind=10))  # fmt: skip
+                      limits=AssessmentLimits(wind=10))  # fmt: skip
 
     one, two = windy(2, 2, 2, 14), windy(2, 2, 12, 14)
     for review, severity, count in ((one, "warning", 1), (two, "danger", 2)):
         (finding,) = found(review, "wind")
         assert (finding.severity, finding.value) == (severity, pytest.approx(14))
         assert f"in the strongest of 4 members, {count} of which" in finding.message
-        assert review.sums.wind == pytest.approx(14)
+        assert review.totals.wind == pytest.approx(14)
         assert found(review, "flyable") == []
         assert "mean wind of 4 members" in " ".join(review.remarks)
     for members, severity in (((2, 2, 2, 25), "warning"), ((2, 2, 25, 25), "danger")):
@@ -332,7 +336,7 @@ def test_wind_that_is_not_known():
     assert "above the highest level" in high.message
     assert north.distance == pytest.approx(1000, abs=30)
     assert all(one.severity == "danger" for one in (north, back, high))
-    assert math.isfinite(review.sums.seconds)
+    assert math.isfinite(review.totals.seconds)
     known = np.isfinite(review.profile.wind_east)
     assert known.any()
     assert not known.all()
@@ -340,7 +344,7 @@ def test_wind_that_is_not_known():
 
 def test_gradients_beyond_the_airframe():
     """The autopilot climbs at 2.5 m/s, the airframe does 2; a fixed-wing arrives lower than it should."""
-    slow = Limits(climb=2.0, descent=3.0)
+    slow = AssessmentLimits(climb=2.0, descent=3.0)
     (finding,) = found(judged(at(0, 300, 280), at(0, 600, 80), limits=slow), "gradient")
     assert (finding.leg, finding.severity) == (1, "warning")
     assert finding.value == pytest.approx(2.5, abs=0.15)
@@ -367,10 +371,10 @@ def test_home_outside_of_the_terrain():
 
 
 def test_the_first_place_far_from_home():
-    review = judged(at(0, 900), at(0, 100), limits=Limits(first_leg=500))
+    review = judged(at(0, 900), at(0, 100), limits=AssessmentLimits(first_leg=500))
     (finding,) = found(review, "first-leg")
     assert (finding.item, finding.severity, finding.value) == (2, "warning", pytest.approx(900, abs=one_centimetre))
-    assert found(judged(at(0, 400), at(0, 3000), limits=Limits(first_leg=500)), "first-leg") == []
+    assert found(judged(at(0, 400), at(0, 3000), limits=AssessmentLimits(first_leg=500)), "first-leg") == []
 
 
 def test_a_landing_at_another_height_than_the_ground():
@@ -384,7 +388,10 @@ def test_a_landing_at_another_height_than_the_ground():
 
 def test_a_mission_without_an_end():
     back, unlimited = free(Command.DO_JUMP, 2, -1), at(0, 500, command=Command.NAV_LOITER_UNLIM)
-    for last, words in ((back, "item 4, DO_JUMP for ever"), (unlimited, "item 4, NAV_LOITER_UNLIM")):
+    for last, words in (
+        (back, "item 4, DO_JUMP, repeats indefinitely"),
+        (unlimited, "item 4, NAV_LOITER_UNLIM, loiters indefinitely"),
+    ):
         for kind in ("multicopter", "fixed-wing"):
             review = judged(at(0, 300), at(0, 500), last, mission={"vehicle_type": kind})
             (finding,) = found(review, "endless")
@@ -429,11 +436,11 @@ def test_a_mission_of_another_site():
 def test_the_reserve_and_the_limit():
     """The airframe keeps 1 - 0.8 · 0.75 = 40 %."""
     frame = airframe(watts=400, capacity=250_000)
-    review = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=frame, limits=Limits(battery=0.5))
+    review = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=frame, limits=AssessmentLimits(battery=0.5))
     (reserve,), (limit,) = found(review, "reserve"), found(review, "battery")
-    assert reserve.value == limit.value == pytest.approx(100 * review.sums.left)
+    assert reserve.value == limit.value == pytest.approx(100 * review.totals.left)
     assert (reserve.limit, limit.limit) == pytest.approx((40, 50))
-    assert review.sums.reserve == pytest.approx(0.5)
+    assert review.totals.reserve == pytest.approx(0.5)
     assert review.stops[limit.leg].left < 0.5 <= review.stops[limit.leg - 1].left
     large = judged(at(0, 1500), at(1500, 1500), at(0, 0), RETURN, airframe=airframe(capacity=2_500_000))
     assert found(large, "reserve") == []
@@ -445,9 +452,9 @@ def test_circles_take_from_the_battery():
     frame = airframe(capacity=1_000_000)
     turned, passed = (judged(item, RETURN, airframe=frame) for item in (turns, replace(turns, params=(0.0,) * 4)))
     seconds = 10 * 2 * math.pi * 50 / math.sqrt(0.5 * 2.5 * 50)
-    assert turned.sums.seconds - passed.sums.seconds == pytest.approx(seconds, abs=0.01)
+    assert turned.totals.seconds - passed.totals.seconds == pytest.approx(seconds, abs=0.01)
     watts = float(frame.power.watts(7.9, 0.0, air_density(GROUND + 80)))
-    assert turned.sums.energy - passed.sums.energy == pytest.approx(watts * seconds, rel=1e-6)
+    assert turned.totals.energy - passed.totals.energy == pytest.approx(watts * seconds, rel=1e-6)
     assert turned.stops[1].hold == pytest.approx(seconds)
 
 
@@ -489,16 +496,16 @@ def test_rates_that_are_the_autopilots():
 def test_a_reserve_in_time():
     """Ten minutes of level flight at 15 m/s, on top of the fifth that is not usable."""
     frame = airframe(watts=400, capacity=1_000_000)
-    review = judged(at(0, 900), airframe=frame, limits=Limits(reserve_seconds=600.0))
+    review = judged(at(0, 900), airframe=frame, limits=AssessmentLimits(reserve_seconds=600.0))
     watts = float(frame.power.watts(15.0, 0.0, air_density(GROUND + 80)))
-    assert review.sums.reserve == pytest.approx(0.2 + 600 * watts / 1_000_000)
-    strict = judged(at(0, 900), airframe=frame, limits=Limits(reserve_seconds=1900.0))
+    assert review.totals.reserve == pytest.approx(0.2 + 600 * watts / 1_000_000)
+    strict = judged(at(0, 900), airframe=frame, limits=AssessmentLimits(reserve_seconds=1900.0))
     (finding,) = found(strict, "reserve-time")
     assert "31.6667 min" in finding.message
 
 
 def test_a_way_home_through_a_hill():
-    review = judged(at(2000, 0), terrain=ridge(150), limits=Limits(clearance=30))
+    review = judged(at(2000, 0), terrain=ridge(150), limits=AssessmentLimits(clearance=30))
     assert found(review, "return")[0].value == pytest.approx(80 - 150, abs=one_millimetre)
     assert "to 180 m" in found(review, "return")[0].message
     assert review.stops[1].return_energy is None
@@ -524,7 +531,7 @@ def test_findings_are_told_dangers_first_and_once_a_leg():
         at(0, 0),
         at(0, 900, 150),
         terrain=ridge(),
-        limits=Limits(clearance=30, max_height=120, first_leg=500),
+        limits=AssessmentLimits(clearance=30, max_height=120, first_leg=500),
     )
     severities = [finding.severity for finding in review.findings]
     assert severities == sorted(severities)
@@ -535,7 +542,7 @@ def test_findings_are_told_dangers_first_and_once_a_leg():
 
 def test_findings_from_elsewhere_are_added():
     flown = case(at(0, 300), RETURN)
-    (far,) = found(judged(at(0, 900), limits=Limits(first_leg=500)), "first-leg")
+    (far,) = found(judged(at(0, 900), limits=AssessmentLimits(first_leg=500)), "first-leg")
     assert assess(flown, [far]).findings == (far,)
     assert assess(replace(flown, pace=SWIFT)).verdict == "clear"
     assert free(Command.NAV_RETURN_TO_LAUNCH) == RETURN

@@ -71,7 +71,7 @@ def test_a_jump_ahead_for_ever_leads_past_items():
 def test_a_delay_is_a_hold_at_the_stop_before():
     review = judged(at(0, 300), free(Command.NAV_DELAY, 25), at(0, 600, 80, 7.0))
     assert [stop.hold for stop in review.stops] == pytest.approx([0.0, 25.0, 7.0])
-    assert review.sums.seconds == pytest.approx(review.stops[-1].seconds + 7.0)
+    assert review.totals.seconds == pytest.approx(review.stops[-1].seconds + 7.0)
 
 
 @pytest.mark.parametrize(("height", "expected"), [(80.0, 80.0), (6.0, 15.0)])
@@ -196,7 +196,7 @@ def test_a_mission_that_leads_nowhere_is_refused():
 def test_a_mission_of_a_takeoff_alone():
     review = judged()
     assert (len(review.stops), len(review.legs)) == (1, 0)
-    assert math.isnan(review.sums.clearance)
+    assert math.isnan(review.totals.clearance)
     assert [finding.rule for finding in review.findings] == ["ending"]
 
 

@@ -9,7 +9,7 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 import pytest
 
-from gcs_windplan.assessment import Limits
+from gcs_windplan.assessment import AssessmentLimits
 from gcs_windplan.formats.kml import format_kml
 from gcs_windplan.mission import RallyPoint
 from gcs_windplan.scene import Airspace, Prism
@@ -24,7 +24,7 @@ REVIEW = judged(
     at(2000, 900, 150),
     RETURN,
     terrain=ridge(),
-    limits=Limits(clearance=30, max_height=120),
+    limits=AssessmentLimits(clearance=30, max_height=120),
     airspace=Airspace((Prism("school & co <1>", BOX, ceiling=900.0),)),
     departure=datetime(2026, 5, 1, 8, tzinfo=UTC),
     mission={"rally": (RallyPoint(point(100, 100), 40.0),)},

@@ -14,8 +14,9 @@ from scipy.optimize import brentq
 from gcs_windplan.flight.sampling import integrate, performance_of
 from gcs_windplan.kernels import edges
 from gcs_windplan.kernels.triangle import ground_speed, leg_seconds, wind_angle
+from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 from gcs_windplan.vehicle import Vehicle
-from gcs_windplan.wind import ConstantWind, Diverging, Jet, Rotation
+from gcs_windplan.wind import ConstantWind
 from tests.oracles.flying import naive_angle, naive_edge_time, naive_slowness
 
 speeds = st.floats(-15, 15)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 from gcs_windplan.planning.cost import CostChoice, LegCost
 from gcs_windplan.planning.search import blow, find_path
 from gcs_windplan.planning.shaping import shape
@@ -23,7 +24,6 @@ from gcs_windplan.planning.veil import lay_grid
 from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.vehicle import SpeedModel, Vehicle
-from gcs_windplan.wind import Diverging, Jet, Rotation
 from gcs_windplan.wind.field import Steady, WindField
 from tests.oracles.zermelo import PlaneWind
 

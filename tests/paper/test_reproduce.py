@@ -15,10 +15,11 @@ from gcs_windplan.paper.flying import SHAPED, fly_case, seconds_of, seconds_on_t
 from gcs_windplan.paper.frequency import make_pairs, sweep, time_wins
 from gcs_windplan.paper.graphs import lay_roadmap, lay_uniform
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID, printed_seconds
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.paper.tables import Table
 
 TERRAIN = make_terrain()
-EXACT, SAMPLED = make_rules(TERRAIN), make_rules(TERRAIN, "paper")
+EXACT, SAMPLED = make_rules(TERRAIN), make_rules(TERRAIN, SampledTest())
 SITES = sites_of(EXACT, CASES)
 all_of_it = {"angle": True, "hybrid": True, "time": True}
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import gcs_windplan as gw
 from gcs_windplan.errors import RequestError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.paper import SampledTest
 from gcs_windplan.planning.cost import COST_NAMES
 from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
 from gcs_windplan.scene import Airspace, Prism
@@ -253,7 +254,7 @@ def test_models_that_flatter_are_noted():
     (note,) = gw.plan_route(replace(asked, layers=(40.0,))).notes
     assert "cross wind for free" in note
     assert "up to 7.0 m/s" in note
-    (note,) = gw.plan_route(request(dem, collision_test="paper", layers=(40.0,))).notes
+    (note,) = gw.plan_route(request(dem, collision_test=SampledTest(), layers=(40.0,))).notes
     assert "thin ridge" in note
 
 

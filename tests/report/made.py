@@ -8,16 +8,16 @@ from datetime import UTC, datetime
 import numpy as np
 
 from gcs_windplan.assessment import (
+    AssessedLeg,
     Assessment,
+    AssessmentLimits,
     Finding,
     GroundMap,
-    JudgedLeg,
-    Limits,
+    MissionTotals,
     Outline,
     Profile,
     Source,
     Stop,
-    Sums,
 )
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 
@@ -77,7 +77,7 @@ def assessment(name: str = "over the ridge", stops: int = 9, above: float = 70.0
     )  # fmt: skip
     lengths = np.diff(distance)
     legs = tuple(
-        JudgedLeg(
+        AssessedLeg(
             i + 1, i + 1, float(np.degrees(track[at[i + 1]]) % 360), float(np.degrees(track[at[i + 1]]) % 360),
             float(lengths[i]), float(np.hypot(lengths[i], altitude[i + 1] - altitude[i])),
             float(altitude[i + 1] - altitude[i]), float((altitude[i + 1] - altitude[i]) / lengths[i]),
@@ -88,7 +88,7 @@ def assessment(name: str = "over the ridge", stops: int = 9, above: float = 70.0
     )  # fmt: skip
     over_ground = z - hills(e, n)
     low, high = int(over_ground.argmin()), int(over_ground.argmax())
-    sums = Sums(
+    totals = MissionTotals(
         float(seconds[-1] + 20), 12.0, 20.0, float(distance[-1]), sum(one.length for one in legs), 300.0, 280.0,
         float(over_ground.min()), float(over_ground.max()), 7.4, 10.2, float(1.6e6 * (1 - left[-1])), float(left[-1]),
         0.25,
@@ -108,7 +108,7 @@ def assessment(name: str = "over the ridge", stops: int = 9, above: float = 70.0
     square = np.array([[-800.0, -1400.0], [300.0, -1500.0], [200.0, -700.0], [-700.0, -600.0]])
     return Assessment(
         name, "ardupilot", "multicopter", FRAME, "EGM2008", datetime(2026, 5, 1, 9, tzinfo=UTC), listed, legs, profile,
-        sums, Limits(clearance=30.0, max_height=120.0, wind=12.0, battery=0.25), findings, ground_map(),
+        totals, AssessmentLimits(clearance=30.0, max_height=120.0, wind=12.0, battery=0.25), findings, ground_map(),
         (Outline("reserve", "keep-out", square, ceiling=1500.0), Outline("all", "fence-in", 2.2 * square + 300)),
         ((46.795, 9.79),),
         (
@@ -123,8 +123,8 @@ def clear() -> Assessment:
     """A mission without findings, energy, power, wind or gusts known."""
     made = assessment("quiet", stops=4)
     return replace(
-        made, findings=(), outlines=(), rally=(), sources=(), remarks=(), departure=None, limits=Limits(),
+        made, findings=(), outlines=(), rally=(), sources=(), remarks=(), departure=None, limits=AssessmentLimits(),
         profile=replace(made.profile, power=None, left=None),
-        sums=replace(made.sums, energy=None, left=None, reserve=None, gust=None),
+        totals=replace(made.totals, energy=None, left=None, reserve=None, gust=None),
         ground=replace(made.ground, wind_places=np.zeros((0, 2)), winds=np.zeros((0, 2))),
     )  # fmt: skip

@@ -143,7 +143,9 @@ def absurd(height: float) -> Assessment:
         mission,
         profile=replace(profile, altitude=high, power=strange, seconds=long, distance=profile.distance * 1e27),
         stops=tuple(stops),
-        sums=replace(mission.sums, seconds=1e30, length=abs(height), height=abs(height), energy=np.nan, left=np.nan),
+        totals=replace(
+            mission.totals, seconds=1e30, length=abs(height), height=abs(height), energy=np.nan, left=np.nan
+        ),
         findings=(finding, *mission.findings[1:]),
     )
 
@@ -210,7 +212,7 @@ def test_the_map_fills_its_frame(show, shape) -> None:
 def test_the_totals_leave_no_cell_empty(show, size) -> None:
     mission = made.assessment()
     for gust in (10.2, None):  # an even and an odd number of cells
-        opened = show(replace(mission, sums=replace(mission.sums, gust=gust)), size=size)
+        opened = show(replace(mission, totals=replace(mission.totals, gust=gust)), size=size)
         whole = opened.page.locator(".figures").bounding_box()
         cells = [cell.bounding_box() for cell in opened.page.locator(".figures > div").all()]
         assert max(cell["x"] + cell["width"] for cell in cells[-1:]) == pytest.approx(
@@ -267,7 +269,7 @@ def test_the_pointer_reads_the_charts_out(show) -> None:
     opened.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
     distance = float(opened.reading("distance").removesuffix(" km")) * 1000
     share = (0.7 * box["width"] - 48) / (box["width"] - 62)
-    assert distance == pytest.approx(share * mission.sums.distance, abs=30)
+    assert distance == pytest.approx(share * mission.totals.distance, abs=30)
     profile = mission.profile
     i = int(np.abs(profile.distance - distance).argmin())
     assert float(opened.reading("altitude").removesuffix(" m")) == pytest.approx(profile.altitude[i], abs=3)
@@ -295,7 +297,7 @@ def test_arrow_keys_move_the_cursor_and_say_where_it_is(show) -> None:
     opened.page.keyboard.press("ArrowRight")
     assert slider.input_value() == "2"
     opened.page.keyboard.press("End")
-    assert opened.reading("distance") == f"{made.assessment().sums.distance / 1000:.2f} km"
+    assert opened.reading("distance") == f"{made.assessment().totals.distance / 1000:.2f} km"
     spoken = slider.get_attribute("aria-valuetext")
     assert all(word in spoken for word in ("altitude", "above ground", "wind along", "airspeed", "battery"))
 

@@ -19,7 +19,7 @@ from gcs_windplan.assessment import Assessment, Finding, Source, assess_plan
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.report import page, render_page, words
-from gcs_windplan.report.places import Place, place_of
+from gcs_windplan.report.places import FindingPlace, place_of
 from tests.report import made
 
 MEGABYTE = 1_000_000
@@ -113,7 +113,7 @@ def test_a_finding_of_an_item_lies_at_its_stop() -> None:
     mission = made.assessment()
     finding = Finding("speed", "warning", "too fast", item=3)
     assert place_of(mission, finding).distance == mission.stops[3].distance
-    assert place_of(mission, Finding("speed", "warning", "too fast")) == Place()
+    assert place_of(mission, Finding("speed", "warning", "too fast")) == FindingPlace()
 
 
 def test_tables_have_captions_and_scopes(one: str) -> None:
@@ -210,8 +210,8 @@ def test_a_thinned_profile_keeps_extremes_and_findings() -> None:
     assert len(track["d"]) < len(mission.profile.distance)
     above = [z - g for z, g in zip(track["z"], track["g"], strict=True)]
     rounding = 0.11  # [m] two heights to a decimetre
-    assert min(above) == pytest.approx(mission.sums.clearance, abs=rounding)
-    assert max(above) == pytest.approx(mission.sums.height, abs=rounding)
+    assert min(above) == pytest.approx(mission.totals.clearance, abs=rounding)
+    assert max(above) == pytest.approx(mission.totals.height, abs=rounding)
 
 
 def test_two_missions_stand_side_by_side_with_their_differences(two: str) -> None:
@@ -219,8 +219,8 @@ def test_two_missions_stand_side_by_side_with_their_differences(two: str) -> Non
     table = next(t for t in tree.iter("table") if "compare" in (t.get("class") or ""))
     rows = {text_of(row[0]): [text_of(cell) for cell in row[1:]] for row in table.iterfind("tbody/tr")}
     first, second = made.assessment("straight"), made.assessment("bent", shift=300.0, stops=12)
-    change = second.sums.seconds - first.sums.seconds
-    assert rows["Time"][3] == f"{100 * change / first.sums.seconds:+.1f} %".replace("-", "−")
+    change = second.totals.seconds - first.totals.seconds
+    assert rows["Time"][3] == f"{100 * change / first.totals.seconds:+.1f} %".replace("-", "−")
     assert "points" in rows["Battery left"][2]
     assert "B takes" in text_of(tree)
 
@@ -253,7 +253,7 @@ def test_what_is_not_known_is_a_dash_and_null() -> None:
         mission,
         profile=replace(mission.profile, ground=blank, wind_along=blank, wind_east=blank, seconds=blank),
         ground=replace(mission.ground, heights=np.full_like(mission.ground.heights, np.nan)),
-        sums=replace(mission.sums, seconds=np.inf, clearance=np.nan, height=np.nan, left=np.nan, energy=np.inf),
+        totals=replace(mission.totals, seconds=np.inf, clearance=np.nan, height=np.nan, left=np.nan, energy=np.inf),
     )
     page = render_page([unknown])
     assert "never" in text_of(tree_of(page))

@@ -1,4 +1,4 @@
-"""Judged missions as PNG."""
+"""Assessed missions as PNG."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gcs_windplan.report import draw_assessment_map, draw_assessment_profile, sheet
+from gcs_windplan.report import draw_assessment_map, draw_assessment_profile
+from gcs_windplan.report.labels import LabelPlacer, rings
+from gcs_windplan.report.map import new_map, style_axes
 from gcs_windplan.report.relief import Ground, contour_step, shade
-from gcs_windplan.report.room import Room, rings
 from gcs_windplan.terrain import Extent
 from tests.report import made
 
@@ -64,17 +65,27 @@ def test_stops_do_not_cover_findings() -> None:
 
 
 def test_what_stands_on_a_drawing_keeps_its_room() -> None:
-    _, axes, _ = sheet.sheet(Extent(0, 0, 1000, 1000))
-    sheet.dress(axes, Extent(0, 0, 1000, 1000), "")
-    room = Room(axes)
+    _, axes, _ = new_map(Extent(0, 0, 1000, 1000))
+    style_axes(axes, Extent(0, 0, 1000, 1000), "")
+    placer = LabelPlacer(axes)
     half, around = (6.0, 4.0), ((0.0, 0.0), *rings(13.0, 1))
-    taken = [room.beside(0.5, 0.5, half, around) for _ in range(12)]
+    taken = [placer.beside(0.5, 0.5, half, around) for _ in range(12)]
     placed = np.array([offset for offset in taken if offset is not None])
     assert len(placed) < 12  # then it is full
     for i, one in enumerate(placed):
         apart = np.abs(placed[:i] - one)
         assert ((apart[:, 0] >= 12) | (apart[:, 1] >= 8)).all()
-    assert room.beside(0.0, 0.5, half, around)[0] > 0  # not over the edge
+    assert placer.beside(0.0, 0.5, half, around)[0] > 0  # not over the edge
+
+
+def test_words_keep_off_lines_where_there_is_other_room() -> None:
+    _, axes, _ = new_map(Extent(0, 0, 1000, 1000))
+    style_axes(axes, Extent(0, 0, 1000, 1000), "")
+    placer, half = LabelPlacer(axes), (6.0, 4.0)
+    placer.keep_free(np.array([[0.5, 0.5], [1.0, 0.5]]))  # eastwards
+    assert placer.beside(0.5, 0.5, half, rings(13.0, 1))[0] < 10
+    (only,) = {placer.beside(0.8, 0.5, half, [(0.0, 0.0)])}
+    assert only == (0.0, 0.0), "on the line rather than nowhere"
 
 
 def test_what_is_not_known_is_left_out() -> None:
@@ -94,7 +105,7 @@ def test_slopes_towards_the_light_are_bright_and_unknown_ground_is_clear() -> No
     x, y = np.meshgrid(np.linspace(-1000, 1000, 80), np.linspace(-1000, 1000, 80))
     heights = 300 - 0.3 * np.hypot(x, y)  # a cone
     heights[0, 0] = np.nan
-    colours = shade(Ground(-1000, -1000, 1000, 1000, heights), lines=False)
+    colours = shade(Ground(-1000, -1000, 1000, 1000, heights), contours=0)
     north_west, south_east = colours[60, 20, :3].sum(), colours[20, 60, :3].sum()
     assert north_west > 1.2 * south_east
     assert colours[0, 0, 3] == 0

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
-from gcs_windplan.wind import ConstantWind, LogLaw, PowerLaw, ProfileWind, Rotation
+from gcs_windplan.paper.fields import Rotation
+from gcs_windplan.wind import ConstantWind, LogLaw, PowerLaw, ProfileWind
 
 
 def _slope(points: FloatArray) -> FloatArray:

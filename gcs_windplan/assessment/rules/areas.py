@@ -10,29 +10,17 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment.assessment import Outline
-from gcs_windplan.assessment.figures import Judged
+from gcs_windplan.assessment.figures import AssessedMission
 from gcs_windplan.assessment.outlines import outlines_of
-from gcs_windplan.assessment.rules.saying import Found, move_name, on_move
+from gcs_windplan.assessment.rules.places import Found, on_move
 from gcs_windplan.assessment.track import is_leg
 from gcs_windplan.kernels.airspace import inside, legs_leaving, legs_through
 
-_SAID = {
-    "keep-out": "enters the keep-out '{}'",
-    "keep-in": "leaves the keep-in '{}'",
-    "fence-out": "enters the mission's own {}",
-    "fence-in": "leaves the mission's own {}",
-}
-_DO = {
-    "keep-out": "lead it around",
-    "keep-in": "keep it inside",
-    "fence-out": "the autopilot will act on it; lead it around, or correct the fence",
-    "fence-in": "the autopilot will act on it; keep it inside, or correct the fence",
-}
 _SLACK = 0.02  # [m] what rounding to 1e-7 degrees and centimetres may have moved
 _INSIDE = np.linspace(0.125, 0.875, 7)  # shares of a way between two borders
 
 
-def areas(mission: Judged) -> Iterator[Found]:
+def areas(mission: AssessedMission) -> Iterator[Found]:
     """Legs inside of what they must keep out of, or outside of what they must keep in; take-offs and landings inside.
 
     These begin and end below what a keep-in may have for a floor.
@@ -42,17 +30,16 @@ def areas(mission: Judged) -> Iterator[Found]:
         if outline.kind == "obstacle":
             continue  # these are no prisms, and have a rule of their own
         rule = "fence" if outline.kind.startswith("fence") else outline.kind
-        told: set[int] = set()
+        found: set[int] = set()
         for piece in np.flatnonzero(_broken(outline, track.starts, track.ends)):
             move = int(track.owners[piece])
-            if move in told or not (is_leg(track.moves[move]) or outline.kind.endswith("out")):
+            if move in found or not (is_leg(track.moves[move]) or outline.kind.endswith("out")):
                 continue
             place = _first_break(outline, track.starts[piece], track.ends[piece])
             if place is None:
                 continue
-            told.add(move)
-            message = f"{move_name(mission, move)} {_SAID[outline.kind].format(outline.name)}: {_DO[outline.kind]}"
-            yield on_move(mission, move, rule, message, place)
+            found.add(move)
+            yield on_move(mission, move, rule, place, kind=outline.kind, area=outline.name)
 
 
 def _broken(outline: Outline, starts: FloatArray, ends: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Rules of what the vehicle can do: make way against the wind, hold the speed commanded, climb as steeply as asked."""
+"""Rules of what the vehicle can do: make headway, hold the speed commanded, climb as steeply as asked."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.assessment.assessment import JudgedLeg
-from gcs_windplan.assessment.figures import Judged
-from gcs_windplan.assessment.flown import going_of
+from gcs_windplan.assessment.assessment import AssessedLeg
+from gcs_windplan.assessment.figures import AssessedMission
+from gcs_windplan.assessment.flown import commands_of
 from gcs_windplan.assessment.known import known_wind
 from gcs_windplan.assessment.motion import density_at, motion_in
-from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg, runs
+from gcs_windplan.assessment.rules.places import Found, on_leg, runs
 from gcs_windplan.assessment.rules.wind import severity_in
 from gcs_windplan.vehicle import SEA_LEVEL_DENSITY, FixedWing
 
@@ -23,7 +23,7 @@ _ROUNDING = 1e-6
 _PASSED = 2.0  # [m] a shorter leg ends within the waypoint's radius (ArduCopter's default of WPNAV_RADIUS)
 
 
-def flyable(mission: Judged) -> Iterator[Found]:
+def flyable(mission: AssessedMission) -> Iterator[Found]:
     """Legs on which the wind stops the vehicle."""
     flown, case = mission.flown, mission.case
     first = flown.samples.first
@@ -35,40 +35,36 @@ def flyable(mission: Judged) -> Iterator[Found]:
         stopped = np.flatnonzero(flown.motion.stopped[part])
         worst = int(stopped[np.argmax(blowing[stopped])]) if len(stopped) else int(np.argmax(blowing))
         yield on_leg(
-            mission, leg, "flyable", "danger",
-            f"{leg_name(leg)} cannot be flown: in wind of {blowing[worst]:.1f} m/s the vehicle makes no way at"
-            f" {case.fastest:g} m/s through the air: another departure, or a faster vehicle",
-            at=flown.samples.places[part][worst], value=float(blowing[worst]), limit=case.fastest, unit="m/s",
+            mission, leg, "flyable", "danger", at=flown.samples.places[part][worst], value=float(blowing[worst]),
+            limit=case.fastest, unit="m/s",
         )  # fmt: skip
 
 
-def flyable_in_members(mission: Judged) -> Iterator[Found]:
+def flyable_in_members(mission: AssessedMission) -> Iterator[Found]:
     """Legs on which the wind stops the vehicle in members of an ensemble, though not in their mean."""
     stopped, members = _stopped_in_members(mission), len(mission.case.members)
     for first, last in runs([bool(count) for count in stopped]):
         worst = first + int(np.argmax(stopped[first : last + 1]))
         leg, count = mission.legs[worst], int(stopped[worst])
-        more = "" if first == last else f"; legs {first + 1} to {last + 1} in as many at most"
         yield on_leg(
-            mission, leg, "flyable", severity_in(count, members, mission.case.robust),
-            f"{leg_name(leg)} cannot be flown in {count} of {members} members, in which the wind is too strong for"
-            f" {mission.case.fastest:g} m/s through the air{more}: another departure, or a faster vehicle",
-            value=float(count), limit=(1 - mission.case.robust) * members, unit="members",
+            mission, leg, "flyable", severity_in(count, members, mission.case.robust), value=float(count),
+            limit=(1 - mission.case.robust) * members, unit="members", members=members, airspeed=mission.case.fastest,
+            first_leg=first + 1, last_leg=last + 1,
         )  # fmt: skip
 
 
-def _stopped_in_members(mission: Judged) -> FloatArray:
+def _stopped_in_members(mission: AssessedMission) -> FloatArray:
     """In how many members each leg cannot be flown (legs,); 0 for one that the mean wind stops already."""
     flown, case, samples = mission.flown, mission.case, mission.flown.samples
-    going = going_of(flown.track, samples.move, samples.direction, flown.peaks, case)
+    command = commands_of(flown.track, samples.move, samples.direction, flown.peaks, case)
     counts = np.zeros(len(mission.track.moves))
     for field in case.members:
         winds = known_wind(field, samples.places, flown.passed).filled
-        counts += samples.sums(motion_in(winds, going, case).stopped.astype(np.float64)) > 0
+        counts += samples.sums(motion_in(winds, command, case).stopped.astype(np.float64)) > 0
     return np.asarray(np.where(flown.stopped > 0, 0.0, counts)[mission.track.leg_moves])
 
 
-def stall(mission: Judged) -> Iterator[Found]:
+def stall(mission: AssessedMission) -> Iterator[Found]:
     """Legs of a fixed-wing near its stall, or below; one finding for all in a row, where it is nearest."""
     case, flown = mission.case, mission.flown
     power = None if case.airframe is None else case.airframe.power
@@ -82,20 +78,17 @@ def stall(mission: Judged) -> Iterator[Found]:
         worst = first + int(np.argmin(shares[nearest[first : last + 1]]))
         leg, at = mission.legs[worst], nearest[worst]
         air, least = float(flown.motion.air[at]), float(stalls[at])
-        flies = "flies" if first == last else f", of legs {first + 1} to {last + 1} the nearest to the stall, flies"
         yield on_leg(
-            mission, leg, "stall", "danger" if air < least else "warning",
-            f"{leg_name(leg)}{' ' if first == last else ''}{flies} at {air:.1f} m/s through the air, and at that height"
-            f" the wing stalls at {least:.1f} m/s: command {_OVER_STALL:g} times that, {_OVER_STALL * least:.1f} m/s",
-            at=samples.places[at], value=air, limit=_OVER_STALL * least, unit="m/s",
+            mission, leg, "stall", "danger" if air < least else "warning", at=samples.places[at], value=air,
+            limit=_OVER_STALL * least, unit="m/s", stall=least, first_leg=first + 1, last_leg=last + 1,
         )  # fmt: skip
 
 
-def airspeed(mission: Judged) -> Iterator[Found]:
+def airspeed(mission: AssessedMission) -> Iterator[Found]:
     """Legs whose commanded speed takes more airspeed than there is: one finding for all, where it is worst."""
     case, flown = mission.case, mission.flown
     first = flown.samples.first
-    short: list[tuple[float, JudgedLeg, FloatArray]] = []
+    short: list[tuple[float, AssessedLeg, FloatArray]] = []
     for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
         if flown.stopped[move] or leg.distance < _PASSED:
             continue
@@ -107,17 +100,12 @@ def airspeed(mission: Judged) -> Iterator[Found]:
     if not short:
         return
     most, leg, place = max(short, key=lambda one: one[0])
-    held = "slower there" if case.hovers else "held back there"
-    more = f", and {len(short) - 1} other legs too much" if len(short) > 1 else ""
     yield on_leg(
-        mission, leg, "airspeed", "warning",
-        f"{leg_name(leg)} takes {most:.1f} m/s through the air to keep its speed{more}, and the vehicle reaches"
-        f" {case.fastest:.1f} m/s: it is {held} and arrives later; command less, or fly in less wind",
-        at=place, value=most, limit=case.fastest, unit="m/s",
-    )  # fmt: skip
+        mission, leg, "airspeed", "warning", at=place, value=most, limit=case.fastest, unit="m/s", others=len(short) - 1
+    )
 
 
-def gradient(mission: Judged) -> Iterator[Found]:
+def gradient(mission: AssessedMission) -> Iterator[Found]:
     """Legs that climb or descend faster than the vehicle can."""
     case, flown = mission.case, mission.flown
     for leg, move in zip(mission.legs, mission.track.leg_moves, strict=True):
@@ -128,18 +116,14 @@ def gradient(mission: Judged) -> Iterator[Found]:
         rate = abs(leg.climb) / moving
         if rate <= limit + _SLACK:
             continue
-        up = "climbs" if leg.climb > 0 else "descends"
-        way = abs(leg.climb) / limit * leg.ground_speed
-        late = "the autopilot waits for the height" if case.hovers else "it arrives at another height"
         yield on_leg(
-            mission, leg, "gradient", "warning" if case.hovers else "danger",
-            f"{leg_name(leg)} {up} {abs(leg.climb):.0f} m on {leg.distance:.0f} m, {rate:.1f} m/s at its speed, and the"
-            f" vehicle does {limit:g} m/s: {late}; give it {way:.0f} m of way, or circle",
-            value=rate, limit=limit, unit="m/s",
+            mission, leg, "gradient", "warning" if case.hovers else "danger", value=rate, limit=limit, unit="m/s",
+            climb=leg.climb, distance=leg.distance, distance_needed=abs(leg.climb) / limit * leg.ground_speed,
+            hovers=case.hovers,
         )  # fmt: skip
 
 
-def _needed(mission: Judged, move: int, part: slice) -> FloatArray:
+def _needed(mission: AssessedMission, move: int, part: slice) -> FloatArray:
     """The airspeed that the commanded speed takes at a move's samples [m/s]."""
     case, motion = mission.case, mission.flown.motion
     if not case.hovers:

@@ -8,36 +8,32 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.assessment.assessment import Severity
-from gcs_windplan.assessment.figures import Judged
+from gcs_windplan.assessment.figures import AssessedMission
 from gcs_windplan.assessment.known import known_wind
-from gcs_windplan.assessment.rules.saying import Found, leg_name, on_leg, runs
+from gcs_windplan.assessment.rules.places import Found, on_leg, runs
 
 _SLACK = 1e-3  # [m/s]
 _ROUNDING = 1e-9  # of a number of members
 
 
-def forecast(mission: Judged) -> Iterator[Found]:
+def forecast(mission: AssessedMission) -> Iterator[Found]:
     """Legs where the wind is not known: outside of the forecast's area or times, or above its levels."""
     wind = mission.flown.wind
     unknown = np.isnan(wind.winds[:, 0])
     for number, index in _first(mission, unknown):
         leg = mission.legs[number]
-        why = wind.said if wind.refused[index] and wind.said else "it rises above the highest level of the wind"
-        yield on_leg(
-            mission, leg, "forecast", "danger",
-            f"{leg_name(leg)}: the wind is not known there and taken as still air: {why}",
-            at=mission.flown.samples.places[index],
-        )  # fmt: skip
+        reason = wind.reason if wind.refused[index] else None
+        yield on_leg(mission, leg, "forecast", "danger", at=mission.flown.samples.places[index], reason=reason)
 
 
-def wind(mission: Judged) -> Iterator[Found]:
+def wind(mission: AssessedMission) -> Iterator[Found]:
     """Legs in stronger wind than allowed."""
     limit = mission.case.limits.wind
     if limit is not None:
         yield from _stronger(mission, winds_of(mission), limit, "wind")
 
 
-def gust(mission: Judged) -> Iterator[Found]:
+def gust(mission: AssessedMission) -> Iterator[Found]:
     """Legs in stronger gusts than allowed, in whatever member."""
     limit = mission.case.limits.gust
     gusts = gusts_of(mission)
@@ -46,19 +42,19 @@ def gust(mission: Judged) -> Iterator[Found]:
     yield from _stronger(mission, gusts[None], limit, "gust")
 
 
-def winds_of(mission: Judged) -> FloatArray:
+def winds_of(mission: AssessedMission) -> FloatArray:
     """The wind at each sample (m, k) [m/s] in each member of an ensemble, or the one wind."""
     flown = mission.flown
     members = [known_wind(field, flown.samples.places, flown.passed).winds for field in mission.case.members]
     return np.array([np.hypot(one[:, 0], one[:, 1]) for one in members or [flown.wind.winds]])
 
 
-def strongest_wind(mission: Judged) -> float:
+def strongest_wind(mission: AssessedMission) -> float:
     """The strongest wind met in any member [m/s], 0 where none is known."""
     return float(np.nanmax(winds_of(mission), initial=0.0))
 
 
-def gusts_of(mission: Judged) -> FloatArray | None:
+def gusts_of(mission: AssessedMission) -> FloatArray | None:
     """The strongest gust of any member at each sample (k,) [m/s], None where none are known."""
     samples, passed = mission.flown.samples, mission.flown.passed
     members = [known_wind(field, samples.places, passed).winds for field in mission.case.gusts]
@@ -67,13 +63,13 @@ def gusts_of(mission: Judged) -> FloatArray | None:
     return np.asarray(np.max([np.hypot(one[:, 0], one[:, 1]) for one in members], axis=0))
 
 
-def strongest_gust(mission: Judged) -> float | None:
+def strongest_gust(mission: AssessedMission) -> float | None:
     """The strongest gust met [m/s], None where none are known."""
     gusts = gusts_of(mission)
     return None if gusts is None or np.isnan(gusts).all() else float(np.nanmax(gusts))
 
 
-def _stronger(mission: Judged, speeds: FloatArray, limit: float, what: str) -> Iterator[Found]:
+def _stronger(mission: AssessedMission, speeds: FloatArray, limit: float, what: str) -> Iterator[Found]:
     """The legs on which speeds at the samples in members (m, k) exceed a limit [m/s]; one finding for all in a row."""
     samples, moves = mission.flown.samples, mission.track.leg_moves
     parts = [np.nan_to_num(speeds[:, samples.first[move] : samples.first[move + 1]]) for move in moves]
@@ -85,11 +81,8 @@ def _stronger(mission: Judged, speeds: FloatArray, limit: float, what: str) -> I
         count, members = int(broken[first : last + 1].max()), len(speeds)
         at = int(samples.first[moves[worst]]) + int(np.argmax(parts[worst].max(axis=0)))
         yield on_leg(
-            mission, leg, what, severity_in(count, members, mission.case.robust),
-            f"{_meeting(mission, first, last, worst)} {'gusts' if what == 'gust' else 'wind'} of {most:.1f} m/s"
-            f"{_in_members(count, members)}, more than the limit of {limit:g} m/s: another departure or a lower or more"
-            " sheltered way",
-            at=samples.places[at], value=most, limit=limit, unit="m/s",
+            mission, leg, what, severity_in(count, members, mission.case.robust), at=samples.places[at], value=most,
+            limit=limit, unit="m/s", first_leg=first + 1, last_leg=last + 1, members=members, broken_in=count,
         )  # fmt: skip
 
 
@@ -98,18 +91,7 @@ def severity_in(count: int, members: int, robust: float) -> Severity:
     return "warning" if members > 1 and count <= (1 - robust) * members + _ROUNDING else "danger"
 
 
-def _meeting(mission: Judged, first: int, last: int, worst: int) -> str:
-    """Legs in a row that meet something, in words; by their indices."""
-    leg = leg_name(mission.legs[worst])
-    return f"{leg} meets" if first == last else f"legs {first + 1} to {last + 1} meet, at worst on {leg},"
-
-
-def _in_members(count: int, members: int) -> str:
-    """In which members it is, in words."""
-    return f" in the strongest of {members} members, {count} of which break it" if members > 1 else ""
-
-
-def _first(mission: Judged, flags: BoolArray) -> Iterator[tuple[int, int]]:
+def _first(mission: AssessedMission, flags: BoolArray) -> Iterator[tuple[int, int]]:
     """The legs that have a flagged sample (k,), and the first of these."""
     first = mission.flown.samples.first
     for number, move in enumerate(mission.track.leg_moves):

@@ -24,6 +24,7 @@ from gcs_windplan.jobs.missionfile.terrain import build_obstacles, build_terrain
 from gcs_windplan.jobs.missionfile.values import FREE
 from gcs_windplan.jobs.missionfile.wind import DAY, Departure, build_wind
 from gcs_windplan.jobs.missionfile.world import SiteModel
+from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.request import Export, FenceArea, Limits, Request, Roadmap, Site, Uniform
 from gcs_windplan.planning.sites import choose_margin
@@ -85,7 +86,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         margin=graph.margin,
         obstacles=obstacles,
         airspace=airspace,
-        collision_test=model.collision_test,
+        collision_test=SampledTest() if model.collision_test == "paper" else None,
         departure=when.moment,
         finish=model.finish,
         return_height=model.return_height,

@@ -10,6 +10,7 @@ from gcs_windplan import wind as air  # its readers are imported when first aske
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.jobs.missionfile.parsing import MissionDocument
 from gcs_windplan.jobs.missionfile.world import PaperWindModel, ProfileModel
+from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 
 if TYPE_CHECKING:
     from gcs_windplan.terrain import Extent, Terrain
@@ -77,8 +78,8 @@ def _forecast(document: MissionDocument, frame: LocalFrame, terrain: Terrain, ar
 def _papers(model: PaperWindModel) -> WindField:
     """One of the paper's fields."""
     if model.field == "jet":
-        return air.Jet(model.speed, model.scale, model.reading)
-    return (air.Diverging if model.field == "diverging" else air.Rotation)(model.speed, model.scale)
+        return Jet(model.speed, model.scale, model.reading)
+    return (Diverging if model.field == "diverging" else Rotation)(model.speed, model.scale)
 
 
 def _law(model: ProfileModel) -> PowerLaw | LogLaw:

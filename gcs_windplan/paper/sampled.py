@@ -14,13 +14,38 @@ kept for comparison with the paper.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
 import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError
-from gcs_windplan.kernels import area_test
+from gcs_windplan.paper import area_test
 from gcs_windplan.terrain.dem import Dem, as_rows
 from gcs_windplan.terrain.mesh import MeshTerrain, PlanBins
+
+if TYPE_CHECKING:
+    from gcs_windplan.terrain import Terrain
+
+
+@dataclass(frozen=True, slots=True)
+class SampledTest:
+    """The paper's test as a `CollisionTest`: a leg is too low where it touches a triangle of the ground at a sample.
+
+    `samples` of a leg on the length of a terrain's cell. It lets legs through thin ridges: for comparison.
+    """
+
+    samples: int = 4
+
+    @property
+    def note(self) -> str:
+        """What a pilot must know of it."""
+        return "the collision test `paper` samples: a leg may pass through a thin ridge. Fly with `exact`."
+
+    def too_low(self, terrain: Terrain, starts: FloatArray, ends: FloatArray) -> BoolArray:
+        """Which legs (n, 3) touch the ground, shape (n,)."""
+        return sampled_collisions(cast("Dem | MeshTerrain", terrain), starts, ends, terrain.resolution / self.samples)
 
 
 def sampled_collisions(

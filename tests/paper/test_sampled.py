@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.terrain import Dem, Hill, MeshTerrain, hills, sampled_collisions
+from gcs_windplan.paper.sampled import sampled_collisions
+from gcs_windplan.terrain import Dem, Hill, MeshTerrain, hills
 from tests.oracles import terrain as naive
 
 
