@@ -82,9 +82,9 @@ def _ways_home(plan: Plan) -> dict[str, Any] | None:
     if ways is None:
         return None
     home, rally = (
-        [joules if math.isfinite(joules) else None for joules in one] for one in (ways.energies, ways.diversions)
+        [joules if math.isfinite(joules) else None for joules in one] for one in (ways.energies, ways.alternates)
     )
-    lost = None if ways.no_return is None else asdict(ways.no_return)
+    lost = None if ways.point_of_no_return is None else asdict(ways.point_of_no_return)
     return {"home": home, "rally": rally if plan.request.rally else None, "point_of_no_return": lost}
 
 

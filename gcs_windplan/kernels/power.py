@@ -21,7 +21,7 @@ _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its en
 class PowerGrid(NamedTuple):
     """Power [W] (heights, climb rates, airspeeds), linear in between, and the airspeeds that a leg may choose from.
 
-    Airspeeds count from 0. `worth` [W] is what a second is worth: a leg's price is its energy and that times its time.
+    Airspeeds count from 0. `cost_index` [W] is the value of a second: a leg's price is its energy and that times its time.
     """
 
     watts: FloatArray
@@ -31,7 +31,7 @@ class PowerGrid(NamedTuple):
     climb_step: float
     airspeed_step: float
     airspeeds: FloatArray  # (k,) [m/s]
-    worth: float = 0.0
+    cost_index: float = 0.0
 
 
 @numba.njit(error_model="numpy", forceinline=True)
@@ -73,7 +73,7 @@ def leg_price(
     level: float, east: float, north: float, climb: float, height: float,
     wind_e: float, wind_n: float, wind_u: float,
 ) -> float:  # fmt: skip
-    """What a leg that takes so many seconds in one wind costs [J]: the energy, and the worth of its time.
+    """What a leg that takes so many seconds in one wind costs [J]: the energy, and its time at the cost index.
 
     The leg goes `level` [m] along the unit track (east, north) and gains `climb` [m]. Its power is that of the airspeed
     it is really flown at: less than the commanded one where the climb rate holds it back, the wind itself where it
@@ -88,7 +88,7 @@ def leg_price(
     else:
         forward = level / seconds - along
         airspeed = math.sqrt(forward * forward + cross * cross)
-    return seconds * (watts_at(grid, airspeed, climb / seconds - wind_u, height) + grid.worth)
+    return seconds * (watts_at(grid, airspeed, climb / seconds - wind_u, height) + grid.cost_index)
 
 
 @numba.njit(cache=True, error_model="numpy")

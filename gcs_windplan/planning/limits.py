@@ -97,14 +97,14 @@ class Strongest:
         """The strongest gust of all [m/s]; None where none are told."""
         return None if np.isnan(self.gusts).all() else float(np.nanmax(self.gusts))
 
-    def keeping(self, limits: Limits) -> int:
+    def within_limits(self, limits: Limits) -> int:
         """In how many members the whole route keeps the limits."""
         return int(np.count_nonzero(~self._over(limits).any(axis=1)))
 
-    def refuse_over(self, limits: Limits, robust: float) -> None:
+    def check_limits(self, limits: Limits, robust: float) -> None:
         """Raise `NoRouteError` where fewer members than the quantile `robust` asks for keep the limits."""
         members = len(self.winds)
-        if self.keeping(limits) > rank_of(robust, members):
+        if self.within_limits(limits) > rank_of(robust, members):
             return
         leg = int(np.argmax(self._over(limits).sum(axis=0)))
         wind, gust = float(np.nanmax(self.winds[:, leg])), float(np.fmax.reduce(self.gusts[:, leg]))

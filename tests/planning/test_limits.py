@@ -166,10 +166,10 @@ def test_members_that_break_the_limit_count_as_ones_that_cannot_fly():
     asked = replace(divided(0.5), limits=Limits(wind=6.5))
     plan = gw.plan_route(asked)
     assert plan.spread.unflyable in (0, 3)  # they are closed in the corridor only
-    assert plan.strongest.keeping(asked.limits) == 10 - plan.spread.unflyable
+    assert plan.strongest.within_limits(asked.limits) == 10 - plan.spread.unflyable
     assert met(plan, asked.members[:1]) <= 6.5
     robust = gw.plan_route(replace(asked, robust=0.9))
-    assert robust.strongest.keeping(asked.limits) >= 9
+    assert robust.strongest.within_limits(asked.limits) >= 9
     with pytest.raises(RequestError, match=r"limits\.wind"):
         gw.plan_route(replace(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
 

@@ -79,8 +79,8 @@ class LegCost:
     the member at the `quantile` from the cheapest up; `wind` is then their mean. Along a leg
     the wind is looked at `finer` times as closely as its resolution asks for. With a `power` a leg costs its energy and
     what its time is worth [J], at the best of the airspeeds there; `energy` needs it, and `time` may have it: then
-    least time is weighed against energy. `corner` [s] is what slowing down at a waypoint takes the vehicle; legs do not
-    cost it, but shaping drops waypoints that are not worth it.
+    least time is weighed against energy. `waypoint_seconds` is what slowing down at a waypoint takes the
+    vehicle; legs do not cost it, but shaping drops waypoints that are not worth it.
     """
 
     choice: CostChoice
@@ -93,7 +93,7 @@ class LegCost:
     quantile: float = 0.5
     finer: float = 1.0
     power: PowerGrid | None = None
-    corner: float = 0.0
+    waypoint_seconds: float = 0.0
 
     def __post_init__(self) -> None:
         if self.choice.name == "energy" and self.power is None:
@@ -124,16 +124,18 @@ class LegCost:
         return len(self.wind.times) > 1
 
     @property
-    def toll(self) -> float:
+    def waypoint_penalty(self) -> float:
         """What a waypoint takes, in the cost's own unit; nothing where that is no matter of time."""
         if self.power is not None:
-            return self.corner * float(np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.worth)
-        return self.corner if self.choice.name == "time" else 0.0
+            return self.waypoint_seconds * float(
+                np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.cost_index
+            )
+        return self.waypoint_seconds if self.choice.name == "time" else 0.0
 
     def least_in(self, seconds: float) -> float:
         """What a way that lasts so long [s] costs at least."""
         if self.power is not None:
-            return seconds * (float(self.power.watts.min()) + self.power.worth)
+            return seconds * (float(self.power.watts.min()) + self.power.cost_index)
         return seconds if self.choice.name == "time" else 0.0
 
     @property

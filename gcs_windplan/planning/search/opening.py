@@ -17,7 +17,7 @@ from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.planning.cost import LegCost
 from gcs_windplan.planning.search.astar import GraphPath, find_path
-from gcs_windplan.planning.search.windy import WindyVeil
+from gcs_windplan.planning.search.wind_graph import WindGraph
 from gcs_windplan.planning.veil import GridVeil, without_legs, without_pairs
 from gcs_windplan.wind.field import WindField
 from gcs_windplan.wind.limited import LimitedWind, unlimited
@@ -30,16 +30,16 @@ _FEWEST, _MOST = 5, 64  # samples of an edge
 
 
 def find_open_path(
-    windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
+    graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
 ) -> GraphPath:
     """`find_path` with every edge open along its whole length. Raises `NoRouteError`."""
     if not isinstance(cost.wind, LimitedWind):
-        return find_path(windy, cost, start, goal, clock)
+        return find_path(graph, cost, start, goal, clock)
     free = replace(cost, wind=cost.wind.field, members=tuple(map(unlimited, cost.members)))
-    air = _Air(cost, windy.veil.edge_length)
+    air = _Air(cost, graph.veil.edge_length)
     expanded, seconds = 0, 0.0
     for _ in range(_ROUNDS):
-        path = find_path(windy, cost, start, goal, clock)
+        path = find_path(graph, cost, start, goal, clock)
         expanded, seconds = expanded + path.expanded, seconds + path.seconds
         times = free.priced(path.points)[1]
         closed = _closed_legs(cost, free, path.points, times)
@@ -47,13 +47,13 @@ def find_open_path(
             return replace(path, expanded=expanded, seconds=seconds)
         begin = time.perf_counter()
         for leg in closed:
-            windy = _closed_around(windy, air, path.points[leg : leg + 2], float(times[leg]))
+            graph = _closed_around(graph, air, path.points[leg : leg + 2], float(times[leg]))
         last = len(path.points) - 2
         if last == 0:
             break
         for end, node in ((0, 1), (last, last)):
             if end in closed:
-                windy = _without_node(windy, path.points[node])
+                graph = _without_node(graph, path.points[node])
         seconds += time.perf_counter() - begin
     raise NoRouteError(
         f"wind limit ({cost.wind}): every path that was tried is closed between two nodes. A finer graph, lower layers,"
@@ -99,9 +99,9 @@ class _Air:
         return int(np.clip(np.ceil(_FINER * self.edge_length / finest), _FEWEST, _MOST))
 
 
-def _closed_around(windy: WindyVeil, air: _Air, leg: FloatArray, begin: float) -> WindyVeil:
+def _closed_around(graph: WindGraph, air: _Air, leg: FloatArray, begin: float) -> WindGraph:
     """The veil without a leg (2, 3) that begins at `begin` [s], and without edges around it that are closed then."""
-    veil, middle = windy.veil, leg.mean(axis=0)
+    veil, middle = graph.veil, leg.mean(axis=0)
     reach = 0.5 * float(np.linalg.norm(leg[1] - leg[0])) + _AROUND * veil.edge_length
 
     def closed(starts: FloatArray, ends: FloatArray) -> BoolArray:
@@ -110,16 +110,15 @@ def _closed_around(windy: WindyVeil, air: _Air, leg: FloatArray, begin: float) -
         return shut
 
     if isinstance(veil, GridVeil):
-        return replace(windy, veil=without_legs(veil, veil.near(middle, reach), closed))
+        return replace(graph, veil=without_legs(veil, veil.near(middle, reach), closed))
     near = np.flatnonzero(np.linalg.norm(veil.points[:, :2] - middle[:2], axis=1) <= reach)
-    return replace(windy, veil=without_pairs(veil, near, closed))
+    return replace(graph, veil=without_pairs(veil, near, closed))
 
 
-def _without_node(windy: WindyVeil, place: FloatArray) -> WindyVeil:
+def _without_node(graph: WindGraph, place: FloatArray) -> WindGraph:
     """The veil without the node at a place, to which the way from a site is closed; a roadmap's sites are nodes."""
-    veil = windy.veil
+    veil = graph.veil
     if not isinstance(veil, GridVeil):
-        return windy
-    points = windy.points.copy()
-    points[np.nanargmin(np.linalg.norm(points - place, axis=1))] = np.nan
-    return replace(windy, points=points)
+        return graph
+    node = np.nanargmin(np.linalg.norm(graph.points - place, axis=1))
+    return replace(graph, closed=np.append(graph.closed, node))
