@@ -33,8 +33,9 @@ def best_airspeeds(
     """The airspeed of each leg of a polyline (n, 3) that takes the least energy, (n - 1,) [m/s].
 
     `between` the slowest and the fastest [m/s]; with a `cost_index` [W], the value of a second, the least
-    energy and price of time. The wind is that of the time at which the leg is flown, from `begin` [s since departure] on. Where several airspeeds take the
-    same, as on a leg whose climb holds the vehicle back, the slowest. The fastest where none can be flown.
+    energy and price of time. The wind is that of the time at which the leg is flown, from `begin` [s since departure]
+    on. Where several airspeeds take the same, as on a leg whose climb holds the vehicle back, the slowest. The fastest
+    where none can be flown.
     """
     changing = len(wind.times) > 1
     times = still_air_times(points, vehicle, begin)

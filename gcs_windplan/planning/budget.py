@@ -17,8 +17,9 @@ def quickest_within(
 ) -> tuple[_Flight, float]:
     """The quickest flight whose energy is at most `allowed` [J], and what it values a second at [W].
 
-    `find` gives the best flight for a cost index, the value of a second [W]: infinite, least time; 0, least energy. `energy` is what
-    a flight takes [J], `cruise` a power to begin with [W]. Where even least energy is too much, that flight.
+    `find` gives the best flight for a cost index, the value of a second [W]: infinite, least time; 0, least energy.
+    `energy` is what a flight takes [J], `cruise` a power to begin with [W]. Where even least energy is too much, that
+    flight.
     """
     quickest = find(math.inf)
     if energy(quickest) <= allowed:

@@ -97,6 +97,11 @@ class Limits:
     way_home: bool | None = None
 
 
+def _unlocated(problem: Problem) -> Problem:
+    """The problem as it is: a request made in Python stands in no file."""
+    return problem
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
     """One planning job.
@@ -144,7 +149,7 @@ class Request:
     gusts: tuple[WindField, ...] = ()
     airframe: Airframe | None = None
     free_airspeed: bool = False
-    locate: Callable[[Problem], Problem] = lambda problem: problem
+    locate: Callable[[Problem], Problem] = _unlocated
 
     @property
     def sites(self) -> tuple[Site, ...]:

@@ -195,7 +195,7 @@ def _merge_short_legs(points: FloatArray, rules: Clearance) -> FloatArray:
 def _airspeeds(
     problem: PlanningProblem, choice: CostChoice, points: FloatArray, begin: float, cost_index: float
 ) -> FloatArray | None:
-    """The airspeed of each leg where it is free: the fastest for least time alone, else of least energy and price of time."""
+    """The airspeed of each leg where it is free: the fastest for least time alone, else the cheapest."""
     request = problem.request
     if not request.free_airspeed or request.airframe is None or problem.power is None:
         return None
