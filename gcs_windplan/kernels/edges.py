@@ -19,10 +19,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, inlined, piece
 from gcs_windplan.kernels.power import leg_price
 from gcs_windplan.kernels.triangle import PAPER, Performance, flown_at, leg_seconds, wind_angle
 
@@ -51,7 +51,7 @@ class Setting(NamedTuple):
     ball_down: float = 0.0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def cost_of(
     setting: Setting, seconds: float,
     level: float, east: float, north: float, climb: float,
@@ -70,7 +70,7 @@ def cost_of(
     return weight * angle / math.pi
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def edge_cost(
     performance: Performance, setting: Setting, grid: Any,
     level: float, east: float, north: float, climb: float, height: float,
@@ -97,7 +97,7 @@ def edge_cost(
     return cost
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def edge_between(
     performance: Performance, setting: Setting, grid: Any,
     de: float, dn: float, dz: float, height: float,
@@ -113,7 +113,7 @@ def edge_between(
     return edge_cost(performance, setting, grid, level, de / level, dn / level, dz, height, ae, an, au, be, bn, bu)
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+@inlined
 def remaining(performance: Performance, setting: Setting, e: float, n: float, z: float) -> float:
     """The estimate from a place to the goal; for distance and time a consistent lower bound.
 
@@ -157,7 +157,16 @@ def remaining(performance: Performance, setting: Setting, e: float, n: float, z:
     return seconds
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@compiled
+def remaining_at(performance: Performance, setting: Setting, points: FloatArray) -> FloatArray:
+    """`remaining` at some points (n, 3), shape (n,)."""
+    result = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        result[i] = remaining(performance, setting, points[i, 0], points[i, 1], points[i, 2])
+    return result
+
+
+@inlined
 def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
     """The last time not after the clock, the next one, and the share of the way to it."""
     low, high = 0, times.size - 1
@@ -172,7 +181,7 @@ def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
     return low, low + 1, min((clock - times[low]) / (times[low + 1] - times[low]), 1.0)
 
 
-@numba.njit(error_model="numpy")
+@piece
 def edge_in_time(
     performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray,
     from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -221,7 +230,7 @@ def edge_in_time(
     return math.inf, math.inf
 
 
-@numba.njit(error_model="numpy")
+@piece
 def edge_of_members(
     performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray, rank: int,
     each: FloatArray, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -244,7 +253,7 @@ def edge_of_members(
     return each[0, rank], each[1, rank]
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _travel_at(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -271,7 +280,7 @@ def _travel_at(
     return cost, seconds
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def travel(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -298,7 +307,7 @@ def travel(
     return best, best_seconds
 
 
-@numba.njit(error_model="numpy")
+@piece
 def travel_between(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -316,7 +325,7 @@ def travel_between(
     return cost, seconds
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def joins(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, inlined, piece
 from gcs_windplan.kernels.triangle import Performance, flown_at, leg_seconds
 
 _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its ends
@@ -21,7 +21,7 @@ _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its en
 class PowerGrid(NamedTuple):
     """Power [W] (heights, climb rates, airspeeds), linear in between, and the airspeeds that a leg may choose from.
 
-    Airspeeds count from 0. `cost_index` [W] is the value of a second: a leg's price is its energy and that times its time.
+    Airspeeds count from 0. `cost_index` [W] is the value of a second: a leg's price is its energy and that of its time.
     """
 
     watts: FloatArray
@@ -34,7 +34,7 @@ class PowerGrid(NamedTuple):
     cost_index: float = 0.0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _place(value: float, low: float, step: float, count: int) -> tuple[int, float]:
     """The knot below a value, and how far it is to the next; the first or the last interval beyond the ends."""
     steps = (value - low) / step
@@ -42,7 +42,7 @@ def _place(value: float, low: float, step: float, count: int) -> tuple[int, floa
     return knot, min(max(steps - knot, 0.0), 1.0)
 
 
-@numba.njit(error_model="numpy")
+@compiled
 def watts_at(grid: PowerGrid, airspeed: float, climb_rate: float, height: float) -> float:
     """The power [W] at an airspeed, climbing through the air [m/s] at a height [m]; infinite beyond the airspeeds.
 
@@ -67,7 +67,7 @@ def watts_at(grid: PowerGrid, airspeed: float, climb_rate: float, height: float)
     return total
 
 
-@numba.njit(error_model="numpy")
+@piece
 def leg_price(
     grid: PowerGrid, seconds: float,
     level: float, east: float, north: float, climb: float, height: float,
@@ -91,7 +91,7 @@ def leg_price(
     return seconds * (watts_at(grid, airspeed, climb / seconds - wind_u, height) + grid.cost_index)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def integrate_prices(
     performance: Performance, grid: PowerGrid, airspeeds: FloatArray,
     vectors: FloatArray, heights: FloatArray, first: IntArray, weights: FloatArray, shares: FloatArray,

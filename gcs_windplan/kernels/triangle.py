@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, inlined
 
 TRIANGLE, PAPER = 0.0, 1.0
 
@@ -26,13 +26,13 @@ class Performance(NamedTuple):
     hovers: float  # 1 or 0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def flown_at(performance: Performance, airspeed: float) -> Performance:
     """The same vehicle at another airspeed."""
     return Performance(performance.model, airspeed, performance.climb, performance.descent, performance.hovers)
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def ground_speed(model: float, airspeed: float, along: float, cross: float) -> float:
     """Speed along the track [m/s] with the wind's components along and across it; 0 where it cannot be flown.
 
@@ -49,7 +49,7 @@ def ground_speed(model: float, airspeed: float, along: float, cross: float) -> f
     return max(0.0, math.sqrt(rest) + along)
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def leg_seconds(
     performance: Performance,
     level: float, east: float, north: float, climb: float,
@@ -88,7 +88,7 @@ def leg_seconds(
     return vertical
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float) -> float:
     """The angle between a direction and the wind [rad], 0..π: equation (10) with atan2 for the printed arctan.
 
@@ -104,7 +104,7 @@ def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: floa
     return math.atan2(math.sqrt(ce * ce + cn * cn + cu * cu), dot)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def integrate_legs(
     performance: Performance, airspeeds: FloatArray,
     vectors: FloatArray, first: IntArray, weights: FloatArray, winds: FloatArray,
@@ -136,7 +136,7 @@ def integrate_legs(
     return result
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
     """The mean angle [rad] between each direction (n, 3) and its share of the winds (n k, 3), shape (n,)."""
     n = vectors.shape[0]

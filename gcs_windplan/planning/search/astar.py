@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import search_csr, search_grid
-from gcs_windplan.kernels.edges import Setting, joins, remaining
+from gcs_windplan.kernels.edges import Setting, joins, remaining_at
 from gcs_windplan.planning.cost import LegCost
 from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, breaches_around
@@ -109,10 +109,7 @@ def _search_grid(
     costs = leave(near, blows, graph.points[near] - start)
     flyable = np.isfinite(costs[:, 0])
     seeds, costs = near[flyable], costs[flyable]
-    if len(estimates):
-        ahead = estimates[seeds]
-    else:
-        ahead = np.array([remaining(performance, setting, *graph.points[seed]) for seed in seeds], dtype=np.float64)
+    ahead = estimates[seeds] if len(estimates) else remaining_at(performance, setting, graph.points[seeds])
     nodes, total, expanded, reached = search_grid(
         np.array(veil.heights.shape, dtype=np.int64), veil.corner, veil.spacing, veil.steps,
         veil.heights.ravel(), veil.legal, blows, estimates, performance, setting, cost.power,
