@@ -3,6 +3,8 @@
 Edges take the wind as linear between their two nodes. Where both ends can be flown, so can all between: the winds in
 which a track is flyable are a convex set.
 
+A fourth component of a wind is how strong it and its gusts are, as a share of what is allowed; beyond 1 nothing flies.
+
 A search tells by what it hands over which world it is:
 
     winds (nodes, 3), times None                     steady
@@ -24,7 +26,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.kernels.compiled import compiled, inlined, piece
 from gcs_windplan.kernels.power import leg_price
-from gcs_windplan.kernels.triangle import PAPER, Performance, flown_at, leg_seconds, wind_angle
+from gcs_windplan.kernels.triangle import PAPER, Performance, beyond_limit, flown_at, leg_seconds, wind_angle
 
 _ROUNDS = (
     20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
@@ -197,7 +199,10 @@ def edge_in_time(
     ae = (1.0 - late) * from_winds[k, node, 0] + late * from_winds[k1, node, 0]
     an = (1.0 - late) * from_winds[k, node, 1] + late * from_winds[k1, node, 1]
     au = (1.0 - late) * from_winds[k, node, 2] + late * from_winds[k1, node, 2]
+    limited = from_winds.shape[2] > 3
     outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
+    if limited and (1.0 - late) * from_winds[k, node, 3] + late * from_winds[k1, node, 3] > 1.0:
+        outset = math.inf
     seconds, be, bn, bu = outset, ae, an, au
     for _ in range(_ROUNDS):
         if not seconds < math.inf:
@@ -209,6 +214,9 @@ def edge_in_time(
         be = (1.0 - share) * to_winds[i, to, 0] + share * to_winds[i1, to, 0]
         bn = (1.0 - share) * to_winds[i, to, 1] + share * to_winds[i1, to, 1]
         bu = (1.0 - share) * to_winds[i, to, 2] + share * to_winds[i1, to, 2]
+        if limited and (1.0 - share) * to_winds[i, to, 3] + share * to_winds[i1, to, 3] > 1.0:
+            seconds = math.inf
+            break
         before = seconds
         seconds = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
         if abs(seconds - before) < _SAME:
@@ -224,7 +232,8 @@ def edge_in_time(
         return cost_of(setting, seconds, level, east, north, climb, be, bn, bu), seconds
     for later in range(k1, times.size):
         we, wn, wu = from_winds[later, node, 0], from_winds[later, node, 1], from_winds[later, node, 2]
-        if leg_seconds(performance, level, east, north, climb, we, wn, wu) < math.inf:
+        allowed = not limited or from_winds[later, node, 3] <= 1.0
+        if allowed and leg_seconds(performance, level, east, north, climb, we, wn, wu) < math.inf:
             tally[1] += 1
             break
     return math.inf, math.inf
@@ -261,6 +270,8 @@ def _travel_at(
 ) -> tuple[float, float]:  # fmt: skip
     """`travel` at the airspeed of the performance."""
     if from_winds.ndim == 2:
+        if beyond_limit(from_winds, node) or beyond_limit(to_winds, to):
+            return math.inf, 0.0
         steady: float = edge_cost(
             performance, setting, grid, level, east, north, climb, height,
             from_winds[node, 0], from_winds[node, 1], from_winds[node, 2],

@@ -13,7 +13,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.kernels.compiled import compiled, inlined, piece
-from gcs_windplan.kernels.triangle import Performance, flown_at, leg_seconds
+from gcs_windplan.kernels.triangle import Performance, beyond_limit, flown_at, leg_seconds
 
 _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its ends
 
@@ -100,7 +100,8 @@ def integrate_prices(
     """Price [J] and seconds (n, k, 2) of n legs at each of k airspeeds of its own (n, k) [m/s].
 
     `vectors` (n, 3) from start to end and `heights` (n,) of the starts above mean sea level [m]; leg i owns the samples
-    first[i] .. first[i + 1] - 1, which lie at `shares` of the leg, have `weights` that sum to 1, and `winds` (m, 3).
+    first[i] .. first[i + 1] - 1, which lie at `shares` of the leg, have `weights` that sum to 1, and `winds`
+    (m, 3), or (m, 4) as in `integrate_legs`.
     """
     n, choices = airspeeds.shape
     result = np.zeros((n, choices, 2))
@@ -116,6 +117,8 @@ def integrate_prices(
             for m in range(first[i], first[i + 1]):
                 we, wn, wu = winds[m, 0], winds[m, 1], winds[m, 2]
                 seconds = leg_seconds(flown, level, east, north, climb, we, wn, wu)
+                if beyond_limit(winds, m):
+                    seconds = math.inf
                 height = heights[i] + shares[m] * climb
                 price = leg_price(grid, seconds, level, east, north, climb, height, we, wn, wu)
                 result[i, k, 0] += weights[m] * price

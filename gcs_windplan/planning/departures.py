@@ -15,7 +15,7 @@ from gcs_windplan.flight import Flight, fly
 from gcs_windplan.planning.battery import battery_use
 from gcs_windplan.planning.cost import CostChoice, rank_of
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limited, strongest_along
+from gcs_windplan.planning.limits import Strongest, strongest_along
 from gcs_windplan.planning.order import optimise_order
 from gcs_windplan.planning.planner import pose_problem
 from gcs_windplan.planning.request import Request
@@ -76,7 +76,6 @@ def sweep(
     and flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
     """
     problem = pose_problem(replace(request, members=())) if request.members else pose_problem(request)
-    request = limited(request, 0.0)
     if request.departure is not None and len(moments):
         begins = [(moment - request.departure).total_seconds() for moment in moments]
     else:

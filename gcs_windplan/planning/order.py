@@ -197,8 +197,7 @@ def _reordered(problem: PlanningProblem, order: tuple[int, ...]) -> PlanningProb
     """The same with its vias (numbered from 1) in an order."""
     via = tuple(problem.request.via[number - 1] for number in order)
     sites = problem.sites[[0, *order, len(order) + 1]]
-    request, asked = (replace(one, via=via) for one in (problem.request, problem.asked))
-    return replace(problem, sites=sites, request=request, asked=asked)
+    return replace(problem, sites=sites, request=replace(problem.request, via=via))
 
 
 def _saving(choice: CostChoice, chosen: float, given: float) -> str:

@@ -20,7 +20,7 @@ from gcs_windplan.planning.battery import BatteryUse, battery_use, check_reserve
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limited, limits_broken_at_sites, strongest_along
+from gcs_windplan.planning.limits import Strongest, limits_broken_at_sites, strongest_along, wind_limits
 from gcs_windplan.planning.order import optimise_order, too_many_or_equal
 from gcs_windplan.planning.request import Request, Roadmap
 from gcs_windplan.planning.returns import WaysHome, check_return, home_from_the_end, ways_home
@@ -148,12 +148,12 @@ def pose_problem(request: Request) -> PlanningProblem:
     begin = time.perf_counter()
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
-    bound = limited(request)
     veil = _lay_veil(request, rules, layers, sites, area)
-    graph = sample_wind(veil, bound.wind, bound.members)
-    mean_graph = sample_wind(veil, bound.wind) if bound.members else None
+    graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
+    mean = replace(request, members=())
+    mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
     seconds = time.perf_counter() - begin
-    return PlanningProblem(bound, request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
+    return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
 
 
 def solve(problem: PlanningProblem, choice: CostChoice, begin: float = 0.0) -> Plan:
@@ -202,7 +202,7 @@ def _planned(
             f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem))}", error.cuts
         ) from error
     flight = fly(
-        found.points, request.frame, request.terrain, problem.flown.wind, request.vehicle, begin, request.power,
+        found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
         found.airspeeds,
     )  # fmt: skip
     effort = Effort(
@@ -217,12 +217,10 @@ def _planned(
     ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
         ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin)
-    if problem.flown is not problem.asked:
-        strongest = strongest_along(problem.asked, found.points, begin, found.airspeeds)
+    if problem.graph.limits:
+        strongest = strongest_along(request, found.points, begin, found.airspeeds)
         strongest.check_limits(request.limits, request.robust)
-    return Plan(
-        problem.asked, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest
-    )
+    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest)
 
 
 def _home_again(problem: PlanningProblem, flight: Flight, begin: float) -> float:
@@ -261,7 +259,7 @@ def _best_route(
         except NoRouteError as no_route:
             error = error or no_route
             continue
-        spread = spread_of(problem.flown, found.points, begin, found.airspeeds)
+        spread = spread_of(problem.request, found.points, begin, found.airspeeds)
         assert spread is not None
         candidates.append((found, spread))
     if not candidates:
@@ -316,5 +314,5 @@ def _lasting(problem: PlanningProblem, begin: float) -> float:
         found = find_route(problem, CostChoice("time"), begin, unshaped)
     except (NoRouteError, WindError):
         return float("inf")
-    spread = spread_of(problem.flown, found.points, begin, found.airspeeds)
+    spread = spread_of(problem.request, found.points, begin, found.airspeeds)
     return found.arrival - begin if spread is None else spread.at(problem.request.robust)

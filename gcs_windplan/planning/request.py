@@ -96,6 +96,11 @@ class Limits:
     reserve_seconds: float | None = None
     way_home: bool | None = None
 
+    @property
+    def of_wind(self) -> bool:
+        """Whether wind or gusts are limited."""
+        return self.wind is not None or self.gust is not None
+
 
 def _unlocated(problem: Problem) -> Problem:
     """The problem as it is: a request made in Python stands in no file."""

@@ -17,10 +17,10 @@ from gcs_windplan.flight import fly
 from gcs_windplan.kernels.power import PowerGrid
 from gcs_windplan.planning.airspeeds import best_airspeeds
 from gcs_windplan.planning.cost import CostChoice, LegCost
-from gcs_windplan.planning.limits import limited
+from gcs_windplan.planning.limits import strongest_along
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.search import WindGraph, find_open_path
-from gcs_windplan.planning.shaping import shape, with_spare_of_limits
+from gcs_windplan.planning.shaping import shape
 from gcs_windplan.scene import Clearance
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
@@ -35,12 +35,11 @@ _SHORT_LEG: Final = 1.0  # [m] legs so short are none: half of ArduCopter's defa
 class PlanningProblem:
     """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
 
-    The winds of `request` are closed a little below its limits, those of `asked` are as they blow. `power` is there
+    `power` is there
     where the airframe is known, `mean_graph` with the members' mean where there is an ensemble. Threads may share it.
     """
 
     request: Request
-    asked: Request
     rules: Clearance
     sites: FloatArray
     graph: WindGraph
@@ -52,13 +51,7 @@ class PlanningProblem:
         """The same without the members of an ensemble: only their mean blows."""
         if self.mean_graph is None:
             return self
-        request, asked = (replace(one, members=()) for one in (self.request, self.asked))
-        return replace(self, request=request, asked=asked, graph=self.mean_graph, mean_graph=None)
-
-    @property
-    def flown(self) -> Request:
-        """The request for whom flies a route that is found: its winds are closed at the limits themselves."""
-        return limited(self.asked, 0.0)
+        return replace(self, request=replace(self.request, members=()), graph=self.mean_graph, mean_graph=None)
 
     @property
     def vehicle(self) -> Vehicle:
@@ -133,7 +126,7 @@ def find_route(
         found.expanded += path.expanded
         found.deferred += path.deferred
         found.vertices += len(path.points) - 1
-        prices, times = with_spare_of_limits(cost, 0.0).priced(shaped)
+        prices, times = cost.with_spare(0.0).priced(shaped)
         found.cost += float(np.sum(prices))
         found.graph_cost += cost.of_polyline(path.points)
         found.points = np.concatenate([found.points, shaped[1:]])
@@ -164,7 +157,7 @@ def cost_between(
         power = problem.power._replace(cost_index=cost_index)
     return LegCost(
         choice, request.wind, problem.vehicle, edge, straight, begin, request.members, request.robust, power=power,
-        waypoint_seconds=_CORNER if request.vehicle.hovers else 0.0,
+        waypoint_seconds=_CORNER if request.vehicle.hovers else 0.0, limits=problem.graph.limits,
     )  # fmt: skip
 
 
@@ -204,13 +197,15 @@ def _airspeeds(
         return np.full(len(points) - 1, fastest)
     value = cost_index if choice.name == "time" else 0.0
     return best_airspeeds(
-        points, problem.asked.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
+        points, request.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
     )
 
 
 def _refuse(problem: PlanningProblem, points: FloatArray, begin: float) -> NoReturn:
     """Raise `NoRouteError` for a route (n, 3) on which the wind, looked at closely, is worse than at the nodes."""
-    request = problem.flown
+    request = problem.request
+    if problem.graph.limits:
+        strongest_along(request, points, begin).check_limits(request.limits, request.robust)
     fly(points, request.frame, request.terrain, request.wind, problem.vehicle, begin)  # says on which leg, if on one
     raise NoRouteError(
         "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"

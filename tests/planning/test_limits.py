@@ -184,7 +184,7 @@ def test_gusts_are_limited_where_the_forecast_tells_them():
         gw.plan_route(replace(asked, gusts=()))
     (problem,) = caught.value.problems
     assert problem.field == "limits.gust"
-    assert problem.message.startswith("no gusts are told by the wind (corridor): leave the limit out")
+    assert problem.message.startswith("the forecast has no gusts (corridor): leave the limit out")
     with pytest.raises(RequestError, match=r"the gusts there are 9\.00 m/s or more, too much for limits\.gust, 6 m/s"):
         gw.plan_route(replace(asked, goal=Site("goal", 900.0, 600.0)))
 
@@ -222,5 +222,5 @@ def test_gusts_of_a_file(gallery, tmp_path):
     (line,) = [line for line in summary_lines(plan) if line.startswith("strongest")]
     assert re.search(r"in any of the 10 members: wind \d\.\d m/s \(limits\.wind 9 m/s\), gust \d+\.\d m/s", line)
     assert line.endswith("10 of 10 keep the limits")
-    with pytest.raises(RequestError, match=r"jacksboro\.yaml:\d+:\d+: limits\.gust: no gusts are told by the wind"):
+    with pytest.raises(RequestError, match=r"jacksboro\.yaml:\d+:\d+: limits\.gust: the forecast has no gusts"):
         gw.plan_route(written("jacksboro", "{max_height: 120 m, gust: 10 m/s}"))

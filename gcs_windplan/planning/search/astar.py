@@ -17,7 +17,6 @@ from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, breaches_around
 from gcs_windplan.scene import BREACHES
 from gcs_windplan.scene.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, TOO_WINDY, UNKNOWN_GROUND
-from gcs_windplan.wind.limited import LimitedWind
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
 _LONG = 3.0  # times the straight way in still air: for so long the wind is sampled at first
@@ -68,7 +67,7 @@ def find_path(graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArr
     seconds = time.perf_counter() - begin
     if len(found.points) == 0:
         reached = np.flatnonzero(np.isfinite(found.reached))
-        raise no_route(graph, winds.times, reached, start, goal, found.outlasted > 0, cost.rank)
+        raise no_route(graph, winds, reached, start, goal, cost, found.outlasted > 0)
     return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
@@ -161,12 +160,12 @@ def _search_prm(
 
 def no_route(
     graph: WindGraph,
-    times: FloatArray | None,
+    winds: NodeWinds,
     reached: IntArray,
     start: FloatArray,
     goal: FloatArray,
-    outlasted: bool = False,
-    rank: int = 0,
+    cost: LegCost,
+    outlasted: bool,
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
     veil = graph.veil
@@ -183,12 +182,12 @@ def no_route(
             flags = veil.clearance.breaches(veil.points_of(around), np.broadcast_to(goal, (len(around), 3)))
             led = np.full(len(around), -1)
     inner = np.isin(led, reached)
-    flags = np.where((flags == 0) & _too_windy(graph, times, led, goal, rank), TOO_WINDY, flags).astype(np.uint8)
+    flags = np.where((flags == 0) & _too_windy(graph, winds, led, goal, cost), TOO_WINDY, flags).astype(np.uint8)
     cuts = _count(flags[~inner] if not inner.all() else flags)
     if not cuts:
         text = "no node lies near enough: use a finer graph, more nodes or a larger radius"
         return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
-    limit = f"wind limit ({graph.fields[0]})"
+    limit = f"wind limit ({graph.limits})"
     told = {limit if name == BREACHES[TOO_WINDY] else name: count for name, count in cuts.items()}
     listed = "; ".join(f"{name}: {count} legs" for name, count in told.items())
     advice = _ADVICE[next(iter(cuts))]
@@ -201,17 +200,14 @@ def no_route(
     )
 
 
-def _too_windy(graph: WindGraph, times: FloatArray | None, nodes: IntArray, goal: FloatArray, rank: int) -> BoolArray:
+def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: LegCost) -> BoolArray:
     """Which nodes (-1: the goal) limits of wind close at some time, in more members than may be left out."""
-    closed = np.zeros((len(graph.fields), len(nodes)), dtype=np.bool_)
-    places = np.where(nodes[:, None] < 0, goal, graph.points[nodes])
-    known = np.isfinite(places).all(axis=1)
-    for member, wind in enumerate(graph.fields):
-        if isinstance(wind, LimitedWind):
-            for moment in np.zeros(1) if times is None else times:
-                closed[member, known] |= wind.closed(places[known], float(moment))
-    many: BoolArray = closed.sum(axis=0) > len(graph.fields) - 1 - rank
-    return many
+    if not graph.limits:
+        return np.zeros(len(nodes), dtype=np.bool_)
+    there = graph.winds_at(goal[None], winds.times)
+    shares = np.where(nodes < 0, there[..., 0:1, 3], winds.winds[..., np.maximum(nodes, 0), 3])
+    closed = (shares > 1.0).reshape(len(graph.fields), -1, len(nodes))
+    return cost.too_many(np.asarray(np.any(closed, axis=1)))
 
 
 def _prm_border(veil: PrmVeil, reached: IntArray) -> tuple[IntArray, FlagArray]:

@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from itertools import pairwise
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.cores import spread
+from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits
 from gcs_windplan.planning.veil import GridVeil, PrmVeil
 from gcs_windplan.wind.field import WindField
-from gcs_windplan.wind.limited import LimitedWind, with_spare
 
-_OFTEN = 600.0  # [s] how often limits are looked at, if the wind's times lie farther apart
-_MOST_MOMENTS = 24  # from a departure to the end of what is searched
 _BATCH = 100_000  # nodes whose wind is sampled at a time
 
 
@@ -26,7 +23,8 @@ class NodeWinds:
     """The wind at a graph's nodes over a stretch of time; nobody changes its arrays.
 
     `winds` [m/s] is (n, 3) in steady wind, (times, n, 3) where it changes, with the members before that where there are
-    several; no wind where the ground is unknown. `times` [s since departure] are the moments; None in steady wind.
+    several; no wind where the ground is unknown. Where there are limits, a fourth component is the share of them.
+    `times` [s since departure] are the moments; None in steady wind.
     """
 
     winds: FloatArray
@@ -68,7 +66,7 @@ class _Samples:
                 return latest
             for moment in moments.tolist():
                 if moment not in self._slices:
-                    self._slices[moment] = np.stack([_sampled(graph.points, one, moment) for one in graph.fields])
+                    self._slices[moment] = np.stack([_sampled(graph, k, moment) for k in range(len(graph.fields))])
             stacked = np.stack([self._slices[moment] for moment in moments.tolist()], axis=1)
             self._latest = NodeWinds(stacked if len(graph.fields) > 1 else stacked[0], moments)
             return self._latest
@@ -86,6 +84,7 @@ class WindGraph:
     fields: tuple[WindField, ...]
     points: FloatArray
     steady: NodeWinds | None = None
+    limits: WindLimits = NO_LIMITS
     closed: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     _samples: _Samples = field(default_factory=_Samples, repr=False)
 
@@ -107,46 +106,52 @@ class WindGraph:
         """
         if self.steady is not None:
             return self.steady
-        knots = self._moments(begin, until)
+        knots = self.fields[0].times if len(self.fields[0].times) > 1 else np.zeros(1)
         first = max(int(np.searchsorted(knots, begin, side="right")) - 1, 0)
         last = min(int(np.searchsorted(knots, until, side="left")), len(knots) - 1)
         return self._samples.at(knots[first : max(last, min(first + 1, len(knots) - 1)) + 1], self)
 
-    def _moments(self, begin: float, until: float) -> FloatArray:
-        """The wind's own times, between which it is linear. With limits others between them, as a limit is not."""
-        knots = self.fields[0].times if len(self.fields[0].times) > 1 else np.zeros(1)
-        if len(knots) < 2 or not isinstance(self.fields[0], LimitedWind):
-            return knots
-        step = max(_OFTEN, (until - begin) / _MOST_MOMENTS)
-        parts = [np.linspace(a, b, math.ceil((b - a) / step), endpoint=False) for a, b in pairwise(knots)]
-        return np.append(np.concatenate(parts), knots[-1])
-
     def winds_at(self, points: FloatArray, times: FloatArray | None) -> FloatArray:
-        """The wind at a few points (k, 3) at the `times` of `NodeWinds`, shaped as its winds."""
-        fields = [with_spare(one, 0.0) for one in self.fields]
+        """The wind at a few points (k, 3) at the `times` of `NodeWinds`, shaped as its winds; nothing is kept free of
+        the limits."""
+        whole = replace(self, limits=self.limits.with_spare(0.0))
         if times is None:
-            return fields[0].at(points)
-        there = [np.stack([one.at(points, float(time)) for time in times]) for one in fields]
-        return np.stack(there) if len(self.fields) > 1 else there[0]
+            return whole.sample(0, points, 0.0)
+        members = range(len(self.fields))
+        there = [np.stack([whole.sample(k, points, time) for time in times.tolist()]) for k in members]
+        return np.stack(there) if len(there) > 1 else there[0]
+
+    def sample(self, member: int, points: FloatArray, seconds: float) -> FloatArray:
+        """A member's wind (n, 3) at points (n, 3) at a moment; (n, 4) with its share of the limits, if any."""
+        winds = self.fields[member].at(points, seconds)
+        if not self.limits:
+            return winds
+        return np.column_stack([winds, self.limits.shares(member, winds, points, seconds)])
 
 
-def sample_wind(veil: GridVeil | PrmVeil, wind: WindField, members: Sequence[WindField] = ()) -> WindGraph:
-    """A veil in a wind, or in those of an ensemble's members; changing ones are sampled when a search asks for them."""
+def sample_wind(
+    veil: GridVeil | PrmVeil, wind: WindField, members: Sequence[WindField] = (), limits: WindLimits = NO_LIMITS
+) -> WindGraph:
+    """A veil in a wind, or in those of an ensemble's members; changing ones are sampled when a search asks for them.
+
+    Nodes are closed to all searches where the wind is beyond the `limits`.
+    """
     fields = tuple(members) if len(members) > 1 else (wind,)
-    points = veil.points
+    graph = WindGraph(veil, fields, veil.points, limits=limits)
     if len(fields) == 1 and len(wind.times) < 2:
-        return WindGraph(veil, fields, points, NodeWinds(_sampled(points, fields[0], 0.0), None))
-    return WindGraph(veil, fields, points)
+        return replace(graph, steady=NodeWinds(_sampled(graph, 0, 0.0), None))
+    return graph
 
 
-def _sampled(points: FloatArray, wind: WindField, seconds: float) -> FloatArray:
-    """The wind (n, 3) at points (n, 3) at a moment; 0 where a height is unknown."""
-    winds = np.zeros_like(points)
+def _sampled(graph: WindGraph, member: int, seconds: float) -> FloatArray:
+    """A member's wind at all nodes at a moment; 0 where a height is unknown."""
+    points = graph.points
+    winds = np.zeros((len(points), 4 if graph.limits else 3))
 
     def part(begin: int) -> None:
         some = slice(begin, begin + _BATCH)
         known = np.isfinite(points[some, 2])
-        winds[some][known] = wind.at(points[some][known], seconds)
+        winds[some][known] = graph.sample(member, points[some][known], seconds)
 
     for _ in spread(part, range(0, len(points), _BATCH)):
         pass
