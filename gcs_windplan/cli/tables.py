@@ -137,7 +137,7 @@ def _strongest(plan: Plan) -> list[str]:
         f"{name} {speed:.1f} m/s" + (f" (limits.{name} {limit:g} m/s)" if limit is not None else "")
         for name, speed, limit in known
     ]
-    kept = f"; {met.keeping(limits)} of {members} keep the limits" if members > 1 else ""
+    kept = f"; {met.within_limits(limits)} of {members} keep the limits" if members > 1 else ""
     return [f"strongest{where}: {', '.join(told)}{kept}"]
 
 
@@ -153,10 +153,10 @@ def _way_home(plan: Plan) -> list[str]:
         return []
     most = f"the thriftiest way home takes at most {watt_hours(max(ways.energies))} Wh"
     if plan.request.rally:
-        most += f", to a rally point at most {watt_hours(max(ways.diversions))} Wh"
-    if ways.no_return is None:
+        most += f", to a rally point at most {watt_hours(max(ways.alternates))} Wh"
+    if ways.point_of_no_return is None:
         return [f"{most}; it is in reach with the reserve from every waypoint"]
-    point = ways.no_return
+    point = ways.point_of_no_return
     if point.distance == 0:
         return [f"{most}; it is not in reach with the reserve from any waypoint"]
     where = f"{point.distance / 1000:.2f} km, {clock(point.seconds)} min, on leg {point.leg}"

@@ -15,9 +15,7 @@ from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.terrain import Terrain
 from gcs_windplan.vehicle import PowerModel, Vehicle, air_density
 from gcs_windplan.wind.field import WindField
-from gcs_windplan.wind.limited import LimitedWind
 
-_LOOKS = 512  # at the wind along a leg, to say why it cannot be flown
 _NEAR_THE_END = 3600.0  # [s] a leg that stops so shortly before the forecast's end stops because of it
 
 
@@ -166,12 +164,6 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, p
                 " take a forecast that reaches further, or depart earlier.",
                 {"wind": len(stopped)},
             )
-        if isinstance(wind, LimitedWind) and _closed_somewhere(wind, points[i : i + 2], float(times[i])):
-            raise NoRouteError(
-                f"leg {i + 1} cannot be flown: it leads through air that the wind limit closes ({wind}). A finer graph,"
-                " other layers, another departure, or a higher limit.",
-                {"wind limit": len(stopped)},
-            )
         if not np.isfinite(parts.along[i] + parts.across[i]):
             raise NoRouteError(
                 f"leg {i + 1} cannot be flown: it rises above the wind's highest level, perhaps over a valley, and the"
@@ -190,12 +182,6 @@ def _refuse_unflyable(parts: LegIntegrals, times: FloatArray, wind: WindField, p
             " or another departure.",
             {"wind": len(stopped)},
         )
-
-
-def _closed_somewhere(wind: LimitedWind, leg: FloatArray, begin: float) -> bool:
-    """Whether the wind's limits close a leg (2, 3) that begins at `begin` [s since departure]."""
-    places = leg[0] + np.linspace(0.0, 1.0, _LOOKS)[:, None] * (leg[1] - leg[0])
-    return bool(wind.closed(places, begin if math.isfinite(begin) else 0.0).any())
 
 
 def _leg(

@@ -15,6 +15,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits
 from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, Performance, integrate_legs
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.each import at_each
@@ -78,11 +79,16 @@ def integrate_each(
     starts: FloatArray,
     ends: FloatArray,
     when: FloatArray | None = None,
+    *,
     finer: float = 1.0,
     airspeeds: FloatArray | None = None,
+    limits: WindLimits = NO_LIMITS,
 ) -> list[LegIntegrals]:
-    """The same in each of several winds, the members of an ensemble, with samples `finer` times as close."""
-    legs = sample_legs(winds, vehicle, starts, ends, when, finer)
+    """The same in each of several winds, the members of an ensemble, with samples `finer` times as close.
+
+    Where a wind is beyond the `limits` a leg cannot be flown in it.
+    """
+    legs = sample_legs(winds, vehicle, starts, ends, when, finer=finer, limits=limits)
     speeds = np.full(len(starts), float(vehicle.airspeed)) if airspeeds is None else airspeeds
     tables = [
         integrate_legs(legs.performance, speeds, legs.vectors, legs.first, legs.weights, blows) for blows in legs.winds
@@ -95,8 +101,8 @@ class SampledLegs:
     """The wind along n legs, in one or several members.
 
     `vectors` (n, 3) [m]; leg i owns the samples first[i] .. first[i + 1] - 1, which lie at `shares` of it, with
-    `weights` that sum to 1 and `winds` (k, 3) in each member. `begins` (n,) is when the legs begin and `last` when the
-    forecast ends [s since departure].
+    `weights` that sum to 1 and `winds` in each member: (k, 3), or (k, 4) with their shares of the limits if there are
+    any. `begins` (n,) is when the legs begin and `last` when the forecast ends [s since departure].
     """
 
     performance: Performance
@@ -122,12 +128,14 @@ def sample_legs(
     starts: FloatArray,
     ends: FloatArray,
     when: FloatArray | None = None,
+    *,
     finer: float = 1.0,
+    limits: WindLimits = NO_LIMITS,
 ) -> SampledLegs:
     """The winds along straight legs (n, 3), looked at `finer` times as closely as their resolution asks for."""
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
-    apart = 2 * min(wind.resolution for wind in winds) / finer
+    apart = 2 * min(limits.resolution_beside(wind, k) for k, wind in enumerate(winds)) / finer
     panels = np.clip(np.ceil(lengths / apart), 1, _MOST_PANELS).astype(np.int64)  # two samples each
     last = min((float(wind.times[-1]) for wind in winds if len(wind.times) > 1), default=np.inf)
     known = np.minimum(when, last) if when is not None else None  # what lasts longer is refused later
@@ -139,24 +147,30 @@ def sample_legs(
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
         points = starts[leg] + share[:, None] * vectors[leg]
         if known is None:
-            return at_each(winds, points)
+            return _with_shares(at_each(winds, points), limits, points, 0.0)
         gone = share if face is None else _gone(face[leg], share)
-        return at_each(winds, points, known[leg, 0] + gone * (known[leg, 1] - known[leg, 0]))
+        moments = known[leg, 0] + gone * (known[leg, 1] - known[leg, 0])
+        return _with_shares(at_each(winds, points, moments), limits, points, moments)
 
     if known is not None and len(vectors):
         short = _SHORT * min(
             (float(np.diff(wind.times).min()) for wind in winds if len(wind.times) > 1), default=np.inf
         )
         for _ in range(_TURNS):
-            before, face = face, _clock_faces(performance, vectors, known, short, wind_at)  # each by the one before
+            before, face = (
+                face,
+                _clock_faces(performance, vectors, known, short, len(winds), wind_at),
+            )  # each by the one before
             if face is None or (before is not None and np.abs(face - before).max() < _SAME_FACE):
                 break
 
     leg, begins, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
     first = np.zeros(len(vectors) + 1, dtype=np.int64)
     np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
+    width = 4 if limits else 3
     blows = [
-        np.ascontiguousarray(sampled[:, :, 3 * member : 3 * member + 3]).reshape(-1, 3) for member in range(len(winds))
+        np.ascontiguousarray(sampled[:, :, width * member : width * (member + 1)]).reshape(-1, width)
+        for member in range(len(winds))
     ]
     return SampledLegs(
         performance,
@@ -170,11 +184,23 @@ def sample_legs(
     )
 
 
+def _with_shares(winds: FloatArray, limits: WindLimits, points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+    """The winds (n, 3 m) of m members at points (n, 3) with each one's share of its limits (n, 4 m), if any."""
+    if not limits:
+        return winds
+    parts = []
+    for member in range(winds.shape[1] // 3):
+        one = winds[:, 3 * member : 3 * member + 3]
+        parts += [one, limits.shares(member, one, points, seconds)[:, None]]
+    return np.concatenate(parts, axis=1)
+
+
 def _clock_faces(
     performance: Performance,
     vectors: FloatArray,
     when: FloatArray,
     short: float,
+    members: int,
     wind_at: Callable[[IntArray, FloatArray], FloatArray],
 ) -> FloatArray | None:
     """The share of each leg's time that has gone at equal ways along it (n, 13); None where all legs are short.
@@ -189,7 +215,8 @@ def _clock_faces(
     leg = np.repeat(slow, _HOURS)
     middles = np.tile((even[:-1] + even[1:]) / 2, len(slow))
     blows = wind_at(leg, middles)
-    blows = np.ascontiguousarray(blows.reshape(len(leg), -1, 3).mean(axis=1))  # of members their mean
+    blows = blows.reshape(len(leg), members, -1)[:, :, :3]
+    blows = np.ascontiguousarray(blows.mean(axis=1))  # of members their mean; limits stop no clock
     alone = np.arange(len(leg) + 1, dtype=np.int64)
     airspeeds = np.full(len(leg), performance.airspeed)
     paces = integrate_legs(performance, airspeeds, vectors[leg], alone, np.ones(len(leg)), blows)[:, 0]

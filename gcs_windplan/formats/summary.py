@@ -80,8 +80,8 @@ def _ways_home(plan: Plan) -> dict[str, Any] | None:
         return None
     return {
         "home": ways.energies,
-        "rally": ways.diversions if plan.request.rally else None,
-        "point_of_no_return": ways.no_return,
+        "rally": ways.alternates if plan.request.rally else None,
+        "point_of_no_return": ways.point_of_no_return,
     }
 
 

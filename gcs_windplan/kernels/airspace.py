@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
+from gcs_windplan.kernels.compiled import compiled, piece
 
 
-@numba.njit(error_model="numpy")
+@compiled
 def inside(corners: FloatArray, x: float, y: float) -> bool:
     """Whether a place lies in a polygon (k, 2), by the even-odd rule."""
     odd = False
@@ -21,7 +21,7 @@ def inside(corners: FloatArray, x: float, y: float) -> bool:
     return odd
 
 
-@numba.njit(error_model="numpy")
+@piece
 def _crossings(corners: FloatArray, ax: float, ay: float, bx: float, by: float, cuts: FloatArray) -> int:
     """Where a leg crosses the polygon's border, as fractions of the leg between 0 and 1, sorted into `cuts`."""
     count = 0
@@ -48,14 +48,14 @@ def _crossings(corners: FloatArray, ax: float, ay: float, bx: float, by: float, 
     return count
 
 
-@numba.njit(error_model="numpy")
+@piece
 def _beyond_box(box: FloatArray, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether a leg's box misses the polygon's box (west, south, east, north)."""
     west, south, east, north = box
     return bool(max(ax, bx) < west or min(ax, bx) > east or max(ay, by) < south or min(ay, by) > north)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def legs_through(corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray) -> BoolArray:
     """Which legs (n, 3) have a part inside the prism: in plan inside the polygon and between floor and ceiling [m]."""
     n = starts.shape[0]
@@ -83,7 +83,7 @@ def legs_through(corners: FloatArray, floor: float, ceiling: float, starts: Floa
     return hit
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def legs_leaving(corners: FloatArray, floor: float, ceiling: float, starts: FloatArray, ends: FloatArray) -> BoolArray:
     """Which legs (n, 3) have a part outside of the prism."""
     n = starts.shape[0]

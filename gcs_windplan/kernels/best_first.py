@@ -10,15 +10,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
+from gcs_windplan.kernels.compiled import compiled, inlined
 from gcs_windplan.kernels.edges import Setting, remaining, travel, travel_between
 from gcs_windplan.kernels.triangle import Performance
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -> None:
     """Put a node into the 4-ary heap of `size` entries; there must be room for one more."""
     hole = size
@@ -33,7 +33,7 @@ def _push(keys: FloatArray, nodes: IntArray, size: int, key: float, node: int) -
     nodes[hole] = node
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     """Drop the first of `size` entries; the last one sinks from the top."""
     last = size - 1
@@ -56,7 +56,7 @@ def _pop(keys: FloatArray, nodes: IntArray, size: int) -> None:
     nodes[hole] = node
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, IntArray]:
     """The heap's arrays, twice as long if `needed` entries do not fit."""
     if needed <= keys.size:
@@ -69,7 +69,7 @@ def _room(keys: FloatArray, nodes: IntArray, needed: int) -> tuple[FloatArray, I
     return longer_keys, longer_nodes
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def search_grid(
     shape: IntArray, corner: FloatArray, spacing: float, steps: IntArray,
     heights: FloatArray, legal: MaskArray, winds: FloatArray, estimates: FloatArray,
@@ -198,7 +198,7 @@ def search_grid(
     return path, best, expanded, reached
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def search_csr(
     first: IntArray, neighbours: IntArray, points: FloatArray, winds: FloatArray, estimates: FloatArray,
     performance: Performance, setting: Setting, grid: Any, start: int, goal: int,

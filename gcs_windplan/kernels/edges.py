@@ -3,6 +3,8 @@
 Edges take the wind as linear between their two nodes. Where both ends can be flown, so can all between: the winds in
 which a track is flyable are a convex set.
 
+A fourth component of a wind is how strong it and its gusts are, as a share of what is allowed; beyond 1 nothing flies.
+
 A search tells by what it hands over which world it is:
 
     winds (nodes, 3), times None                     steady
@@ -19,12 +21,12 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, inlined, piece
 from gcs_windplan.kernels.power import leg_price
-from gcs_windplan.kernels.triangle import PAPER, Performance, flown_at, leg_seconds, wind_angle
+from gcs_windplan.kernels.triangle import PAPER, Performance, beyond_limit, flown_at, leg_seconds, wind_angle
 
 _ROUNDS = (
     20  # of the iteration for an edge's time in changing wind, two or three as a rule: each gains L · ∂v/∂t / 2 v²
@@ -51,7 +53,7 @@ class Setting(NamedTuple):
     ball_down: float = 0.0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def cost_of(
     setting: Setting, seconds: float,
     level: float, east: float, north: float, climb: float,
@@ -70,7 +72,7 @@ def cost_of(
     return weight * angle / math.pi
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def edge_cost(
     performance: Performance, setting: Setting, grid: Any,
     level: float, east: float, north: float, climb: float, height: float,
@@ -97,7 +99,7 @@ def edge_cost(
     return cost
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def edge_between(
     performance: Performance, setting: Setting, grid: Any,
     de: float, dn: float, dz: float, height: float,
@@ -113,7 +115,7 @@ def edge_between(
     return edge_cost(performance, setting, grid, level, de / level, dn / level, dz, height, ae, an, au, be, bn, bu)
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+@inlined
 def remaining(performance: Performance, setting: Setting, e: float, n: float, z: float) -> float:
     """The estimate from a place to the goal; for distance and time a consistent lower bound.
 
@@ -157,7 +159,16 @@ def remaining(performance: Performance, setting: Setting, e: float, n: float, z:
     return seconds
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@compiled
+def remaining_at(performance: Performance, setting: Setting, points: FloatArray) -> FloatArray:
+    """`remaining` at some points (n, 3), shape (n,)."""
+    result = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        result[i] = remaining(performance, setting, points[i, 0], points[i, 1], points[i, 2])
+    return result
+
+
+@inlined
 def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
     """The last time not after the clock, the next one, and the share of the way to it."""
     low, high = 0, times.size - 1
@@ -172,7 +183,7 @@ def _moment(times: FloatArray, clock: float) -> tuple[int, int, float]:
     return low, low + 1, min((clock - times[low]) / (times[low + 1] - times[low]), 1.0)
 
 
-@numba.njit(error_model="numpy")
+@piece
 def edge_in_time(
     performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray,
     from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -188,7 +199,10 @@ def edge_in_time(
     ae = (1.0 - late) * from_winds[k, node, 0] + late * from_winds[k1, node, 0]
     an = (1.0 - late) * from_winds[k, node, 1] + late * from_winds[k1, node, 1]
     au = (1.0 - late) * from_winds[k, node, 2] + late * from_winds[k1, node, 2]
+    limited = from_winds.shape[2] > 3
     outset: float = leg_seconds(performance, level, east, north, climb, ae, an, au)
+    if limited and (1.0 - late) * from_winds[k, node, 3] + late * from_winds[k1, node, 3] > 1.0:
+        outset = math.inf
     seconds, be, bn, bu = outset, ae, an, au
     for _ in range(_ROUNDS):
         if not seconds < math.inf:
@@ -200,6 +214,9 @@ def edge_in_time(
         be = (1.0 - share) * to_winds[i, to, 0] + share * to_winds[i1, to, 0]
         bn = (1.0 - share) * to_winds[i, to, 1] + share * to_winds[i1, to, 1]
         bu = (1.0 - share) * to_winds[i, to, 2] + share * to_winds[i1, to, 2]
+        if limited and (1.0 - share) * to_winds[i, to, 3] + share * to_winds[i1, to, 3] > 1.0:
+            seconds = math.inf
+            break
         before = seconds
         seconds = 0.5 * (outset + leg_seconds(performance, level, east, north, climb, be, bn, bu))
         if abs(seconds - before) < _SAME:
@@ -215,13 +232,14 @@ def edge_in_time(
         return cost_of(setting, seconds, level, east, north, climb, be, bn, bu), seconds
     for later in range(k1, times.size):
         we, wn, wu = from_winds[later, node, 0], from_winds[later, node, 1], from_winds[later, node, 2]
-        if leg_seconds(performance, level, east, north, climb, we, wn, wu) < math.inf:
+        allowed = not limited or from_winds[later, node, 3] <= 1.0
+        if allowed and leg_seconds(performance, level, east, north, climb, we, wn, wu) < math.inf:
             tally[1] += 1
             break
     return math.inf, math.inf
 
 
-@numba.njit(error_model="numpy")
+@piece
 def edge_of_members(
     performance: Performance, setting: Setting, grid: Any, times: FloatArray, tally: IntArray, rank: int,
     each: FloatArray, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -244,7 +262,7 @@ def edge_of_members(
     return each[0, rank], each[1, rank]
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _travel_at(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -252,6 +270,8 @@ def _travel_at(
 ) -> tuple[float, float]:  # fmt: skip
     """`travel` at the airspeed of the performance."""
     if from_winds.ndim == 2:
+        if beyond_limit(from_winds, node) or beyond_limit(to_winds, to):
+            return math.inf, 0.0
         steady: float = edge_cost(
             performance, setting, grid, level, east, north, climb, height,
             from_winds[node, 0], from_winds[node, 1], from_winds[node, 2],
@@ -271,7 +291,7 @@ def _travel_at(
     return cost, seconds
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def travel(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -298,7 +318,7 @@ def travel(
     return best, best_seconds
 
 
-@numba.njit(error_model="numpy")
+@piece
 def travel_between(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
@@ -316,7 +336,7 @@ def travel_between(
     return cost, seconds
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def joins(
     performance: Performance, setting: Setting, grid: Any, times: Any, tally: IntArray, rank: int,
     each: Any, site_winds: FloatArray, winds: FloatArray, nodes: IntArray, vectors: FloatArray,

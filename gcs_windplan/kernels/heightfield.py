@@ -21,24 +21,17 @@ which the polynomial holds [m], and the greatest length of a leg that is as good
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.kernels.compiled import compiled, piece
 
 _EDGE = 1e-6  # [cells] a place that far outside counts as on the edge: rounding, no more
 _BOX = 1 + 1e-9
 
-# Divisors are checked where they may be 0; Numba's own checks would cost up to half of the speed.
-_kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
-# Pieces are called by kernels alone; the wrappers for other callers would take a seventh of the time to compile.
-_BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_piece = numba.njit(error_model="numpy", **_BARE)
 
-
-@_piece
+@piece
 def _to_grid(
     heights: FloatArray, coefficients: FloatArray, scaling: FloatArray, x: float, y: float
 ) -> tuple[float, float]:
@@ -63,7 +56,7 @@ def _to_grid(
     return min(max(column, 0.0), last_column), min(max(row, 0.0), last_row)
 
 
-@_piece
+@piece
 def _ground(heights: FloatArray, column: float, row: float) -> float:
     """The ground's height at a place inside of the grid."""
     last_row, last_column = heights.shape[0] - 1, heights.shape[1] - 1
@@ -75,7 +68,7 @@ def _ground(heights: FloatArray, column: float, row: float) -> float:
     return float(corner + max(f, g) * (side - corner) + min(f, g) * (opposite - side))
 
 
-@_piece
+@piece
 def _extremes(
     heights: FloatArray, c0: float, r0: float, z0: float, c1: float, r1: float, z1: float
 ) -> tuple[float, float]:
@@ -114,7 +107,7 @@ def _extremes(
     return low, high
 
 
-@_kernel
+@compiled
 def heights_at(heights: FloatArray, coefficients: FloatArray, scaling: FloatArray, places: FloatArray) -> FloatArray:
     """The ground's height [m] at local places (n, 2 or more); NaN outside of the grid and in gaps."""
     result = np.empty(places.shape[0])
@@ -124,7 +117,7 @@ def heights_at(heights: FloatArray, coefficients: FloatArray, scaling: FloatArra
     return result
 
 
-@_kernel
+@compiled
 def leg_heights(
     heights: FloatArray, coefficients: FloatArray, scaling: FloatArray, starts: FloatArray, ends: FloatArray
 ) -> FloatArray:

@@ -20,10 +20,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.kernels.compiled import compiled, inlined
 
 LOG, POWER = 0.0, 1.0
 _NOTHING = 1e-7  # a share so small is rounding: the column need not even be known
@@ -31,8 +31,6 @@ _TOP = 0.01  # [m] a point may lie this far above the highest level and still be
 
 # Every axis and column ascends strictly, so no divisor is 0. The model is that of `heightfield`: what Numba compiles
 # for one of them (min, max, empty) serves the other.
-_kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
-_inlined = numba.njit(error_model="numpy", forceinline=True)
 
 
 class Law(NamedTuple):
@@ -58,7 +56,7 @@ class Columns(NamedTuple):
     columns: FloatArray
 
 
-@_kernel
+@compiled
 def interpolate_columns(
     field: Columns, law: Law, places: FloatArray, z: FloatArray, ground: FloatArray, when: FloatArray
 ) -> FloatArray:
@@ -142,7 +140,7 @@ def interpolate_columns(
     return result
 
 
-@_inlined
+@inlined
 def _in_column(
     above: FloatArray, heights: FloatArray, column: int, beyond: int, own: float, roughness: float, law: Law,
     z: float, ground: float, guess: int,
@@ -186,7 +184,7 @@ def _in_column(
     return lower, lower + 1, (z - under) / (over - under), 1.0
 
 
-@_inlined
+@inlined
 def _over_ground(above: FloatArray, law: Law, height: float, roughness: float) -> tuple[int, int, float, float]:
     """What `_in_column` returns, among the levels above the ground."""
     last = above.size - 1
@@ -205,7 +203,7 @@ def _over_ground(above: FloatArray, law: Law, height: float, roughness: float) -
     return lower, lower + 1, (height - above[lower]) / (above[lower + 1] - above[lower]), 1.0
 
 
-@_inlined
+@inlined
 def _share_of(law: Law, height: float, reference: float, roughness: float) -> float:
     """The wind at a height above the ground as a share of that at the reference height; 0 at and below the ground."""
     if height <= 0.0:
@@ -220,13 +218,13 @@ def _share_of(law: Law, height: float, reference: float, roughness: float) -> fl
     return math.log(height / roughness) / math.log(reference / roughness)
 
 
-@_inlined
+@inlined
 def _scale(axis: FloatArray) -> float:
     """Nodes a unit of an axis, on the average."""
     return (axis.size - 1) / (axis[axis.size - 1] - axis[0]) if axis.size > 1 else 0.0
 
 
-@_inlined
+@inlined
 def _bracket(axis: FloatArray, scale: float, value: float) -> tuple[int, float]:
     """Index below a value on an ascending axis and share of the way to the next, held at the ends."""
     last = axis.size - 1
@@ -242,7 +240,7 @@ def _bracket(axis: FloatArray, scale: float, value: float) -> tuple[int, float]:
     return low, (value - axis[low]) / (axis[low + 1] - axis[low])
 
 
-@_inlined
+@inlined
 def _level(levels: FloatArray, height: float) -> tuple[int, float]:
     """The same on a short axis with uneven spacing: counting all that lie below is faster than branching."""
     low = 0

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, piece
 from gcs_windplan.kernels.plan_bins import bin_of, bins_along
 
 _RIM = 1e-9  # [m] a place that far outside of a triangle is still over it: seams have no cracks
@@ -20,7 +20,7 @@ _HOLE = 1e-6  # [m] a stretch over no triangle that is longer is unknown ground
 _FLAT = 1e-10  # plan area over squared longest side, below which a triangle is a wall
 
 
-@numba.njit(cache=True)
+@compiled
 def height_of(tri: FloatArray, x: float, y: float) -> float:
     """The height of a triangle that is no wall at a place over it."""
     a, b, c = tri[0], tri[1], tri[2]
@@ -32,7 +32,7 @@ def height_of(tri: FloatArray, x: float, y: float) -> float:
     return height
 
 
-@numba.njit(cache=True)
+@compiled
 def turn_of(tri: FloatArray) -> float:
     """+1 for a triangle that is counter-clockwise in plan, -1 for clockwise, 0 for a wall."""
     a, b, c = tri[0], tri[1], tri[2]
@@ -44,7 +44,7 @@ def turn_of(tri: FloatArray) -> float:
     return 1.0 if area > 0.0 else -1.0
 
 
-@numba.njit(cache=True)
+@piece
 def _outside(tri: FloatArray, k: int, turn: float, x: float, y: float) -> float:
     """How far a place lies outside of the k-th side in plan [m], negative inside."""
     ax, ay = tri[k, 0], tri[k, 1]
@@ -53,14 +53,14 @@ def _outside(tri: FloatArray, k: int, turn: float, x: float, y: float) -> float:
     return away
 
 
-@numba.njit(cache=True)
+@compiled
 def lies_over(tri: FloatArray, turn: float, x: float, y: float) -> bool:
     """Does a place lie over a triangle that is no wall, or on its rim?"""
     first, second = _outside(tri, 0, turn, x, y), _outside(tri, 1, turn, x, y)
     return first <= _RIM and second <= _RIM and _outside(tri, 2, turn, x, y) <= _RIM
 
 
-@numba.njit(cache=True)
+@piece
 def _top(triangles: FloatArray, grid: FloatArray, heads: IntArray, members: IntArray, x: float, y: float) -> float:
     """The highest surface at a place, NaN where there is none."""
     top = -math.inf
@@ -73,7 +73,7 @@ def _top(triangles: FloatArray, grid: FloatArray, heads: IntArray, members: IntA
     return top if top > -math.inf else math.nan
 
 
-@numba.njit(cache=True)
+@compiled
 def surface_heights(
     triangles: FloatArray, grid: FloatArray, heads: IntArray, members: IntArray, places: FloatArray
 ) -> FloatArray:
@@ -84,7 +84,7 @@ def surface_heights(
     return result
 
 
-@numba.njit(cache=True)
+@piece
 def _span(tri: FloatArray, turn: float, leg: FloatArray, span: FloatArray) -> bool:
     """Fill in the span of a leg (6,) over a triangle that is no wall; False if they do not meet in plan."""
     t0, t1 = 0.0, 1.0
@@ -109,7 +109,7 @@ def _span(tri: FloatArray, turn: float, leg: FloatArray, span: FloatArray) -> bo
     return True
 
 
-@numba.njit(cache=True)
+@piece
 def _wall_span(tri: FloatArray, k: int, leg: FloatArray, span: FloatArray) -> bool:
     """Fill in the span of a leg over the k-th side of a wall: a point, or a stretch along it."""
     dx, dy = leg[3] - leg[0], leg[4] - leg[1]
@@ -142,7 +142,7 @@ def _wall_span(tri: FloatArray, k: int, leg: FloatArray, span: FloatArray) -> bo
     return True
 
 
-@numba.njit(cache=True)
+@piece
 def _least(spans: FloatArray, first: int, last: int, middle: float, t: float) -> tuple[float, float]:
     """The least height at t among the spans that reach over `middle`, and how fast it grows there."""
     low, slope = math.inf, 0.0
@@ -156,7 +156,7 @@ def _least(spans: FloatArray, first: int, last: int, middle: float, t: float) ->
     return low, slope
 
 
-@numba.njit(cache=True)
+@piece
 def _peak(spans: FloatArray, first: int, last: int, a: float, b: float) -> float:
     """The largest of the least heights between a and b, where no span begins or ends.
 
@@ -181,7 +181,7 @@ def _peak(spans: FloatArray, first: int, last: int, a: float, b: float) -> float
     return left + rise * (t - ta)
 
 
-@numba.njit(cache=True)
+@piece
 def _sort(spans: FloatArray, count: int) -> FloatArray:
     """Put spans in order of where they begin; all their ends (2 count,), in order. Both are nearly sorted."""
     for k in range(1, count):
@@ -203,7 +203,7 @@ def _sort(spans: FloatArray, count: int) -> FloatArray:
     return cuts
 
 
-@numba.njit(cache=True)
+@piece
 def _sweep(spans: FloatArray, count: int, length: float) -> tuple[float, float]:
     """The extreme heights of a leg over the highest surface, NaN if there are holes on the way."""
     cuts = _sort(spans, count)
@@ -228,7 +228,7 @@ def _sweep(spans: FloatArray, count: int, length: float) -> tuple[float, float]:
     return low, high
 
 
-@numba.njit(cache=True)
+@compiled
 def surface_leg_heights(
     triangles: FloatArray,
     grid: FloatArray,
@@ -278,7 +278,7 @@ def surface_leg_heights(
     return result
 
 
-@numba.njit(cache=True)
+@piece
 def _doubled(spans: FloatArray) -> FloatArray:
     larger = np.empty((2 * spans.shape[0], 4))
     for k in range(spans.shape[0]):

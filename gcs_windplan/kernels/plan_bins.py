@@ -8,20 +8,20 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled
 
 
-@numba.njit(cache=True)
+@compiled
 def bin_of(grid: FloatArray, value: float, axis: int) -> int:
     """The bin of an east (axis 0) or north (axis 1) coordinate, the nearest there is; 0 for NaN."""
     position = (value - grid[axis]) / grid[2]
     return int(min(position, grid[3 + axis] - 1)) if position > 0.0 else 0
 
 
-@numba.njit(cache=True)
+@compiled
 def fill_bins(boxes: FloatArray, grid: FloatArray) -> tuple[IntArray, IntArray]:
     """Heads and members of plan bins for boxes (m, 4) of west, south, east, north."""
     columns, bins = int(grid[3]), int(grid[3]) * int(grid[4])
@@ -43,7 +43,7 @@ def fill_bins(boxes: FloatArray, grid: FloatArray) -> tuple[IntArray, IntArray]:
     return heads, members
 
 
-@numba.njit(cache=True)
+@compiled
 def bins_along(grid: FloatArray, leg: FloatArray, i: int) -> tuple[int, int]:
     """The first and the last row of bins that a leg touches in column i of the bins."""
     x, y, dx, dy = leg[0], leg[1], leg[3] - leg[0], leg[4] - leg[1]

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.kernels.triangle import Performance, flown_at, leg_seconds
+from gcs_windplan.kernels.compiled import compiled, inlined, piece
+from gcs_windplan.kernels.triangle import Performance, beyond_limit, flown_at, leg_seconds
 
 _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its ends
 
@@ -21,7 +21,7 @@ _ROUNDING = 1e-9  # of the table's steps, by which a value may lie beyond its en
 class PowerGrid(NamedTuple):
     """Power [W] (heights, climb rates, airspeeds), linear in between, and the airspeeds that a leg may choose from.
 
-    Airspeeds count from 0. `worth` [W] is what a second is worth: a leg's price is its energy and that times its time.
+    Airspeeds count from 0. `cost_index` [W] is the value of a second: a leg's price is its energy and that of its time.
     """
 
     watts: FloatArray
@@ -31,10 +31,10 @@ class PowerGrid(NamedTuple):
     climb_step: float
     airspeed_step: float
     airspeeds: FloatArray  # (k,) [m/s]
-    worth: float = 0.0
+    cost_index: float = 0.0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def _place(value: float, low: float, step: float, count: int) -> tuple[int, float]:
     """The knot below a value, and how far it is to the next; the first or the last interval beyond the ends."""
     steps = (value - low) / step
@@ -42,7 +42,7 @@ def _place(value: float, low: float, step: float, count: int) -> tuple[int, floa
     return knot, min(max(steps - knot, 0.0), 1.0)
 
 
-@numba.njit(error_model="numpy")
+@compiled
 def watts_at(grid: PowerGrid, airspeed: float, climb_rate: float, height: float) -> float:
     """The power [W] at an airspeed, climbing through the air [m/s] at a height [m]; infinite beyond the airspeeds.
 
@@ -67,13 +67,13 @@ def watts_at(grid: PowerGrid, airspeed: float, climb_rate: float, height: float)
     return total
 
 
-@numba.njit(error_model="numpy")
+@piece
 def leg_price(
     grid: PowerGrid, seconds: float,
     level: float, east: float, north: float, climb: float, height: float,
     wind_e: float, wind_n: float, wind_u: float,
 ) -> float:  # fmt: skip
-    """What a leg that takes so many seconds in one wind costs [J]: the energy, and the worth of its time.
+    """What a leg that takes so many seconds in one wind costs [J]: the energy, and its time at the cost index.
 
     The leg goes `level` [m] along the unit track (east, north) and gains `climb` [m]. Its power is that of the airspeed
     it is really flown at: less than the commanded one where the climb rate holds it back, the wind itself where it
@@ -88,10 +88,10 @@ def leg_price(
     else:
         forward = level / seconds - along
         airspeed = math.sqrt(forward * forward + cross * cross)
-    return seconds * (watts_at(grid, airspeed, climb / seconds - wind_u, height) + grid.worth)
+    return seconds * (watts_at(grid, airspeed, climb / seconds - wind_u, height) + grid.cost_index)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def integrate_prices(
     performance: Performance, grid: PowerGrid, airspeeds: FloatArray,
     vectors: FloatArray, heights: FloatArray, first: IntArray, weights: FloatArray, shares: FloatArray,
@@ -100,7 +100,8 @@ def integrate_prices(
     """Price [J] and seconds (n, k, 2) of n legs at each of k airspeeds of its own (n, k) [m/s].
 
     `vectors` (n, 3) from start to end and `heights` (n,) of the starts above mean sea level [m]; leg i owns the samples
-    first[i] .. first[i + 1] - 1, which lie at `shares` of the leg, have `weights` that sum to 1, and `winds` (m, 3).
+    first[i] .. first[i + 1] - 1, which lie at `shares` of the leg, have `weights` that sum to 1, and `winds`
+    (m, 3), or (m, 4) as in `integrate_legs`.
     """
     n, choices = airspeeds.shape
     result = np.zeros((n, choices, 2))
@@ -116,6 +117,8 @@ def integrate_prices(
             for m in range(first[i], first[i + 1]):
                 we, wn, wu = winds[m, 0], winds[m, 1], winds[m, 2]
                 seconds = leg_seconds(flown, level, east, north, climb, we, wn, wu)
+                if beyond_limit(winds, m):
+                    seconds = math.inf
                 height = heights[i] + shares[m] * climb
                 price = leg_price(grid, seconds, level, east, north, climb, height, we, wn, wu)
                 result[i, k, 0] += weights[m] * price

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, piece
 from gcs_windplan.kernels.meshes import height_of, lies_over, turn_of
 from gcs_windplan.kernels.plan_bins import bin_of
 
 TOUCH = 1e-3  # [m] what a leg in touch with an obstacle is taken to lie inside of it
 
 
-@numba.njit(cache=True)
+@piece
 def _side_distance2(start: FloatArray, end: FloatArray, a: FloatArray, b: FloatArray) -> float:
     """Squared distance of a leg and the side from a to b.
 
@@ -39,14 +39,14 @@ def _side_distance2(start: FloatArray, end: FloatArray, a: FloatArray, b: FloatA
     return square
 
 
-@numba.njit(cache=True)
+@piece
 def _normal(tri: FloatArray) -> tuple[float, float, float]:
     a, b, c = tri[0], tri[1], tri[2]
     ux, uy, uz, vx, vy, vz = b[0] - a[0], b[1] - a[1], b[2] - a[2], c[0] - a[0], c[1] - a[1], c[2] - a[2]
     return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
-@numba.njit(cache=True)
+@piece
 def _foot_inside(tri: FloatArray, nx: float, ny: float, nz: float, x: float, y: float, z: float) -> bool:
     """Does the foot of a point on the triangle's plane, with this normal, lie inside of the triangle?"""
     for k in range(3):
@@ -57,7 +57,7 @@ def _foot_inside(tri: FloatArray, nx: float, ny: float, nz: float, x: float, y: 
     return True
 
 
-@numba.njit(cache=True)
+@piece
 def _leg_triangle_distance(tri: FloatArray, p: FloatArray, q: FloatArray) -> float:
     """The distance of a leg from p to q and a triangle [m], 0 where they meet.
 
@@ -84,7 +84,7 @@ def _leg_triangle_distance(tri: FloatArray, p: FloatArray, q: FloatArray) -> flo
     return math.sqrt(least)
 
 
-@numba.njit(cache=True)
+@piece
 def _least_possible(bounds: FloatArray, node: int, p: FloatArray, q: FloatArray) -> float:
     """A lower bound of distance less margin between a leg from p to q and all that a node holds.
 
@@ -106,7 +106,7 @@ def _least_possible(bounds: FloatArray, node: int, p: FloatArray, q: FloatArray)
     return max(math.sqrt(square), math.sqrt(centre2) - math.sqrt(half2)) - float(bounds[node, 6])
 
 
-@numba.njit(cache=True)
+@piece
 def _inside(
     triangles: FloatArray,
     owners: IntArray,
@@ -143,7 +143,7 @@ def _inside(
     return margin
 
 
-@numba.njit(cache=True)
+@compiled
 def solid_leg_margins(
     triangles: FloatArray,
     owners: IntArray,
@@ -187,7 +187,7 @@ def solid_leg_margins(
     return result
 
 
-@numba.njit(cache=True)
+@piece
 def _disc_top(tri: FloatArray, turn: float, x: float, y: float, radius: float) -> float:
     """The highest point of a triangle within a horizontal distance of a place, -inf where it is farther away.
 
@@ -218,7 +218,7 @@ def _disc_top(tri: FloatArray, turn: float, x: float, y: float, radius: float) -
     return top
 
 
-@numba.njit(cache=True)
+@compiled
 def solid_tops(
     triangles: FloatArray,
     margins: FloatArray,

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, inlined
 
 TRIANGLE, PAPER = 0.0, 1.0
 
@@ -26,13 +26,13 @@ class Performance(NamedTuple):
     hovers: float  # 1 or 0
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def flown_at(performance: Performance, airspeed: float) -> Performance:
     """The same vehicle at another airspeed."""
     return Performance(performance.model, airspeed, performance.climb, performance.descent, performance.hovers)
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def ground_speed(model: float, airspeed: float, along: float, cross: float) -> float:
     """Speed along the track [m/s] with the wind's components along and across it; 0 where it cannot be flown.
 
@@ -49,7 +49,7 @@ def ground_speed(model: float, airspeed: float, along: float, cross: float) -> f
     return max(0.0, math.sqrt(rest) + along)
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
 def leg_seconds(
     performance: Performance,
     level: float, east: float, north: float, climb: float,
@@ -88,7 +88,13 @@ def leg_seconds(
     return vertical
 
 
-@numba.njit(error_model="numpy", forceinline=True)
+@inlined
+def beyond_limit(winds: FloatArray, k: int) -> bool:
+    """Whether the wind k of (n, 3 or 4) is beyond what is allowed: then its fourth component is more than 1."""
+    return bool(winds.shape[1] > 3 and winds[k, 3] > 1.0)
+
+
+@inlined
 def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: float, wind_u: float) -> float:
     """The angle between a direction and the wind [rad], 0..π: equation (10) with atan2 for the printed arctan.
 
@@ -104,7 +110,7 @@ def wind_angle(east: float, north: float, up: float, wind_e: float, wind_n: floa
     return math.atan2(math.sqrt(ce * ce + cn * cn + cu * cu), dot)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def integrate_legs(
     performance: Performance, airspeeds: FloatArray,
     vectors: FloatArray, first: IntArray, weights: FloatArray, winds: FloatArray,
@@ -112,9 +118,9 @@ def integrate_legs(
     """Integrals along n legs, shape (n, 4): time [s], ∫angle ds [rad m], mean wind along and across [m/s].
 
     `airspeeds` (n,) [m/s] of the legs, `vectors` (n, 3) from start to end [m]; leg i owns the samples first[i] ..
-    first[i + 1] - 1, whose `weights` sum to 1 and whose `winds` (k, 3) [m/s] lie at the quadrature's points. A leg of
-    no length takes no time. Across is positive from left to right. Time is infinite where the wind is too strong, or
-    not known (NaN).
+    first[i + 1] - 1, whose `weights` sum to 1 and whose `winds` (k, 3 or 4) [m/s] lie at the quadrature's points. A leg
+    of no length takes no time. Across is positive from left to right. Time is infinite where the wind is too strong,
+    not known (NaN), or beyond a limit: a fourth component is its share of what is allowed.
     """
     n = vectors.shape[0]
     result = np.zeros((n, 4))
@@ -129,6 +135,8 @@ def integrate_legs(
         flown = flown_at(performance, airspeeds[i])
         for k in range(first[i], first[i + 1]):
             we, wn, wu, share = winds[k, 0], winds[k, 1], winds[k, 2], weights[k]
+            if beyond_limit(winds, k):
+                result[i, 0] = math.inf
             result[i, 0] += share * leg_seconds(flown, level, east, north, du, we, wn, wu)
             result[i, 1] += share * length * wind_angle(de, dn, du, we, wn, wu)
             result[i, 2] += share * (we * east + wn * north)
@@ -136,7 +144,7 @@ def integrate_legs(
     return result
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_angles(vectors: FloatArray, winds: FloatArray) -> FloatArray:
     """The mean angle [rad] between each direction (n, 3) and its share of the winds (n k, 3), shape (n,)."""
     n = vectors.shape[0]

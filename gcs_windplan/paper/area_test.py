@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
+from gcs_windplan.kernels.compiled import compiled, piece
 from gcs_windplan.kernels.plan_bins import bin_of
 
 
-@numba.njit(cache=True)
+@compiled
 def sampled_collisions(
     triangles: FloatArray,
     grid: FloatArray,
@@ -43,7 +43,7 @@ def sampled_collisions(
     return result
 
 
-@numba.njit(cache=True)
+@piece
 def _boxes_meet(tri: FloatArray, low: FloatArray, high: FloatArray) -> bool:
     for axis in range(3):
         if max(tri[0, axis], tri[1, axis], tri[2, axis]) < low[axis]:
@@ -53,7 +53,7 @@ def _boxes_meet(tri: FloatArray, low: FloatArray, high: FloatArray) -> bool:
     return True
 
 
-@numba.njit(cache=True)
+@piece
 def _area(px: float, py: float, pz: float, a: FloatArray, b: FloatArray) -> float:
     """The area of the triangle of a point and two corners [m²]."""
     ux, uy, uz, vx, vy, vz = a[0] - px, a[1] - py, a[2] - pz, b[0] - px, b[1] - py, b[2] - pz
@@ -61,7 +61,7 @@ def _area(px: float, py: float, pz: float, a: FloatArray, b: FloatArray) -> floa
     return 0.5 * math.sqrt(x * x + y * y + z * z)
 
 
-@numba.njit(cache=True)
+@piece
 def _meets_sampled(tri: FloatArray, start: FloatArray, end: FloatArray, step: float, tolerance: float) -> bool:
     a, b, c = tri[0], tri[1], tri[2]
     dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]

@@ -13,7 +13,7 @@ from gcs_windplan.paper.graphs import ROADMAP, SEED, SPACING, lay_roadmap, lay_u
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID, TABLES_3_4, TIME
 from gcs_windplan.paper.tables import Table
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.search import blow
+from gcs_windplan.planning.search import sample_wind
 from gcs_windplan.planning.veil import PrmVeil
 from gcs_windplan.terrain import Dem
 
@@ -68,10 +68,10 @@ def _search(veils: Sequence[PrmVeil], choice: CostChoice, repeats: int) -> list[
     times = np.empty((len(CASES), repeats + 1, len(veils)))
     counts = np.empty((len(CASES), len(veils)))
     for i, case in enumerate(CASES):
-        windy = [blow(veil, case.wind) for veil in veils]
+        graphs = [sample_wind(veil, case.wind) for veil in veils]
         for k in range(repeats + 1):
-            for j, one in enumerate(windy):
-                route = find_route(one, choice, case, make_vehicle())
+            for j, graph in enumerate(graphs):
+                route = find_route(graph, choice, case, make_vehicle())
                 times[i, k, j], counts[i, j] = route.search_seconds, route.expanded
     medians = np.median(times[:, 1:], axis=1).mean(axis=0)
     return [(float(seconds), float(count)) for seconds, count in zip(medians, counts.mean(axis=0), strict=True)]

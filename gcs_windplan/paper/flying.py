@@ -13,7 +13,7 @@ from gcs_windplan.flight.sampling import integrate
 from gcs_windplan.paper.cases import PaperCase, stand
 from gcs_windplan.paper.published import COSTS, TIME
 from gcs_windplan.planning.cost import CostChoice, LegCost
-from gcs_windplan.planning.search import WindyVeil, blow, find_path
+from gcs_windplan.planning.search import WindGraph, find_path, sample_wind
 from gcs_windplan.planning.shaping import shape
 from gcs_windplan.planning.veil import PrmVeil
 from gcs_windplan.scene import Clearance
@@ -50,11 +50,11 @@ def sites_of(rules: Clearance, cases: Sequence[PaperCase]) -> FloatArray:
     return stand(rules, np.array(sorted({place for case in cases for place in (case.start, case.goal)})))
 
 
-def find_route(windy: WindyVeil, choice: CostChoice, case: PaperCase, vehicle: Vehicle) -> Route:
+def find_route(graph: WindGraph, choice: CostChoice, case: PaperCase, vehicle: Vehicle) -> Route:
     """The graph's path of least cost, as the search returns it: the paper shapes nothing."""
-    start, goal = stand(windy.veil.clearance, np.array([case.start, case.goal]))
-    cost = LegCost(choice, case.wind, vehicle, windy.veil.edge_length, float(np.linalg.norm(goal - start)))
-    path = find_path(windy, cost, start, goal)
+    start, goal = stand(graph.veil.clearance, np.array([case.start, case.goal]))
+    cost = LegCost(choice, case.wind, vehicle, graph.veil.edge_length, float(np.linalg.norm(goal - start)))
+    path = find_path(graph, cost, start, goal)
     return Route(path.points, seconds_of(path.points, case.wind, vehicle), path.expanded, path.seconds)
 
 
@@ -73,8 +73,8 @@ def fly_case(
     choices: Sequence[CostChoice] = COSTS,
 ) -> dict[str, Route]:
     """The routes of a case by the costs' names; with the rules `exact` also that of `time`, shaped."""
-    windy = blow(veil, case.wind)
-    routes = {str(choice): find_route(windy, choice, case, vehicle) for choice in choices}
+    graph = sample_wind(veil, case.wind)
+    routes = {str(choice): find_route(graph, choice, case, vehicle) for choice in choices}
     if exact is not None:
         routes[SHAPED] = shape_route(routes[str(TIME)], exact, case.wind, vehicle)
     return routes

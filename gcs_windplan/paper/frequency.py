@@ -15,7 +15,7 @@ from gcs_windplan.paper.graphs import SPACING, THIRTY_SIX, TWENTY, lay_roadmap, 
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID, TIME
 from gcs_windplan.paper.tables import Table
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.search import WindyVeil, blow
+from gcs_windplan.planning.search import WindGraph, sample_wind
 from gcs_windplan.planning.veil import PrmVeil
 from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Dem
@@ -126,7 +126,7 @@ def sweep(
         trial
         for name, veil, model in _graphs(exact, sites, seeds)
         for case in (*CASES, *OTHER_READINGS)
-        for trial in _trials(name, blow(veil, case.wind), case, make_vehicle(model), exact, pairs)
+        for trial in _trials(name, sample_wind(veil, case.wind), case, make_vehicle(model), exact, pairs)
     ]
 
 
@@ -143,7 +143,7 @@ def _graphs(exact: Clearance, sites: np.ndarray, seeds: Sequence[int]) -> Iterat
 
 def _trials(
     graph: str,
-    windy: WindyVeil,
+    wind_graph: WindGraph,
     case: PaperCase,
     vehicle: Vehicle,
     exact: Clearance,
@@ -152,7 +152,7 @@ def _trials(
     for start, goal in pairs:
         flown = PaperCase(case.number, case.reading, case.wind, start, goal)
         try:
-            routes = {choice: find_route(windy, choice, flown, vehicle) for choice in _CHOICES}
+            routes = {choice: find_route(wind_graph, choice, flown, vehicle) for choice in _CHOICES}
         except NoRouteError:
             yield TrialFlight(flown, graph, {})
             continue
@@ -233,7 +233,7 @@ def seed_table(terrain: Dem, seeds: Sequence[int]) -> Table:
     for seed in seeds:
         veil = lay_roadmap(exact, sites, seed)
         for case in CASES:
-            trials += _trials(PRM, blow(veil, case.wind), case, vehicle, exact, [(case.start, case.goal)])
+            trials += _trials(PRM, sample_wind(veil, case.wind), case, vehicle, exact, [(case.start, case.goal)])
     rows = []
     for case in CASES:
         mine = [trial for trial in trials if trial.case == case and trial.routes]

@@ -28,18 +28,19 @@ def best_airspeeds(
     power: PowerModel,
     between: tuple[float, float],
     begin: float = 0.0,
-    worth: float = 0.0,
+    cost_index: float = 0.0,
 ) -> FloatArray:
     """The airspeed of each leg of a polyline (n, 3) that takes the least energy, (n - 1,) [m/s].
 
-    `between` the slowest and the fastest [m/s]; with a `worth` [W] of each second, the least energy and worth. The wind
-    is that of the time at which the leg is flown, from `begin` [s since departure] on. Where several airspeeds take the
-    same, as on a leg whose climb holds the vehicle back, the slowest. The fastest where none can be flown.
+    `between` the slowest and the fastest [m/s]; with a `cost_index` [W], the value of a second, the least
+    energy and price of time. The wind is that of the time at which the leg is flown, from `begin` [s since departure]
+    on. Where several airspeeds take the same, as on a leg whose climb holds the vehicle back, the slowest. The fastest
+    where none can be flown.
     """
     changing = len(wind.times) > 1
     times = still_air_times(points, vehicle, begin)
     for _ in range(_ROUNDS if changing else 1):
-        seconds, price = _priced(points, times, wind, vehicle, power, worth, changing)
+        seconds, price = _priced(points, times, wind, vehicle, power, cost_index, changing)
         airspeeds = _cheapest(price, len(points) - 1, between)
         times = begin + np.append(0.0, np.cumsum(seconds(airspeeds)))
     return airspeeds
@@ -51,7 +52,7 @@ def _priced(
     wind: WindField,
     vehicle: Vehicle,
     power: PowerModel,
-    worth: float,
+    cost_index: float,
     changing: bool,
 ) -> tuple[Callable[[FloatArray], FloatArray], Callable[[FloatArray], FloatArray]]:
     """What gives the legs' seconds and prices (n,) for their airspeeds (n,); infinite where they cannot be flown."""
@@ -67,7 +68,7 @@ def _priced(
         lasting = seconds(airspeeds)
         joules = air.energies(lasting, vehicle, power, airspeeds)
         flyable = np.isfinite(joules)
-        return np.where(flyable, joules + worth * np.where(flyable, lasting, 0.0), np.inf)
+        return np.where(flyable, joules + cost_index * np.where(flyable, lasting, 0.0), np.inf)
 
     return seconds, price
 

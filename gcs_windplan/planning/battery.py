@@ -129,7 +129,7 @@ def _longer(request: Request, flight: Flight) -> FloatArray:
     return np.maximum(longer, 1.0)
 
 
-def refuse_overdrawn(use: BatteryUse | None) -> None:
+def check_reserve(use: BatteryUse | None) -> None:
     """Raise `BatteryError` for a flight that leaves too little: by which rules, and by how much."""
     if use is None or use.missing == 0:
         return

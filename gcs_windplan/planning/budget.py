@@ -17,21 +17,22 @@ def quickest_within(
 ) -> tuple[_Flight, float]:
     """The quickest flight whose energy is at most `allowed` [J], and what it values a second at [W].
 
-    `find` gives the best flight for a worth of each second [W]: infinite, least time; 0, least energy. `energy` is what
-    a flight takes [J], `cruise` a power to begin with [W]. Where even least energy is too much, that flight.
+    `find` gives the best flight for a cost index, the value of a second [W]: infinite, least time; 0, least energy.
+    `energy` is what a flight takes [J], `cruise` a power to begin with [W]. Where even least energy is too much, that
+    flight.
     """
     quickest = find(math.inf)
     if energy(quickest) <= allowed:
         return quickest, math.inf
-    kept, worth = find(0.0), 0.0
+    kept, cost_index = find(0.0), 0.0
     if energy(kept) > allowed:
-        return kept, worth
+        return kept, cost_index
     low, high = math.log(_LEAST * cruise), math.log(_MOST * cruise)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
         tried = find(math.exp(middle))
         if energy(tried) <= allowed:
-            low, kept, worth = middle, tried, math.exp(middle)
+            low, kept, cost_index = middle, tried, math.exp(middle)
         else:
             high = middle
-    return kept, worth
+    return kept, cost_index

@@ -15,12 +15,12 @@ from gcs_windplan.flight import Flight, fly
 from gcs_windplan.planning.battery import battery_use
 from gcs_windplan.planning.cost import CostChoice, rank_of
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limited, strongest_along
-from gcs_windplan.planning.order import put_in_order
-from gcs_windplan.planning.planner import prepare
+from gcs_windplan.planning.limits import Strongest, strongest_along
+from gcs_windplan.planning.order import optimise_order
+from gcs_windplan.planning.planner import pose_problem
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.returns import home_from_the_end
-from gcs_windplan.planning.route import Ready, find_route
+from gcs_windplan.planning.route import PlanningProblem, find_route
 from gcs_windplan.planning.shaping import shape_quickly
 
 _NEAR_THE_END = 2.0  # durations of the flight
@@ -75,14 +75,13 @@ def sweep(
     routes are found on `cores` cores (all, if not said). Over an ensemble each route is planned in the members' mean
     and flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
     """
-    ready = prepare(replace(request, members=())) if request.members else prepare(request)
-    request = limited(request, 0.0)
+    problem = pose_problem(replace(request, members=())) if request.members else pose_problem(request)
     if request.departure is not None and len(moments):
         begins = [(moment - request.departure).total_seconds() for moment in moments]
     else:
         begins = [0.0] * len(moments)
-    ready.windy.cover(min(begins), max(begins))
-    job = _Job(ready, request, request.cost if choice is None else choice)
+    problem.graph.winds_between(min(begins), max(begins))
+    job = _Job(problem, request, request.cost if choice is None else choice)
     workers = min(available_cores() if cores is None else cores, max(len(moments), 1))
     if workers == 1:
         yield from (job.depart(moment, begin) for moment, begin in zip(moments, begins, strict=True))
@@ -98,7 +97,7 @@ def sweep(
 class _Job:
     """What the workers share: the veil in the mean wind, the request with all members, the cost."""
 
-    ready: Ready
+    problem: PlanningProblem
     request: Request
     choice: CostChoice
 
@@ -106,8 +105,8 @@ class _Job:
         """The best route that begins at `begin` [s after the request's departure]."""
         since, request = time.process_time(), self.request
         try:
-            ready = put_in_order(self.ready, self.choice, begin)[0]
-            found = find_route(ready, self.choice, begin, shape_quickly)
+            problem = optimise_order(self.problem, self.choice, begin)[0]
+            found = find_route(problem, self.choice, begin, shape_quickly)
             flight = fly(
                 found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
                 found.airspeeds,
@@ -124,7 +123,7 @@ class _Job:
 
     def _reason(self, flight: Flight, spread: Spread | None, strongest: Strongest, begin: float) -> str | None:
         """Why it is not to be flown: too few members can, a limit of the wind or the battery's reserve is broken."""
-        request, keeping = self.request, strongest.keeping(self.request.limits)
+        request, keeping = self.request, strongest.within_limits(self.request.limits)
         members = len(strongest.winds)
         if spread is not None and not np.isfinite(spread.at(request.robust)):
             able = members - spread.unflyable
@@ -134,8 +133,8 @@ class _Job:
         if keeping <= rank_of(request.robust, members):
             return "wind limit" if spread is None else f"{keeping}/{members}, wind limit"
         en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
-        returns = request.finish == "return" and self.ready.power is not None
-        home_again = home_from_the_end(self.ready, flight, begin) if returns else 0.0
+        returns = request.finish == "return" and self.problem.power is not None
+        home_again = home_from_the_end(self.problem, flight, begin) if returns else 0.0
         use = battery_use(request, flight, en_route, home_again)
         if use is None or use.missing == 0:
             return None

@@ -10,6 +10,7 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.flight.energy import leg_energies
 from gcs_windplan.planning.cost import rank_of
+from gcs_windplan.planning.limits import strongest_along
 from gcs_windplan.planning.request import Request
 
 
@@ -40,11 +41,15 @@ def spread_of(
 ) -> Spread | None:
     """A route (n, 3) flown in every member of the ensemble, from `begin` on; None where there is no ensemble.
 
-    Each leg at the vehicle's airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
+    In a member whose wind or gusts break the request's limits it cannot be flown. Each leg is flown at the vehicle's
+    airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
     """
     if not request.members:
         return None
     times = [fly_legs(points, member, request.vehicle, begin, airspeeds)[1] for member in request.members]
+    if request.limits.of_wind:
+        broken = np.any(strongest_along(request, points, begin, airspeeds).over(request.limits), axis=1).tolist()
+        times = [np.full(len(passed), np.inf) if over else passed for passed, over in zip(times, broken, strict=True)]
     energies = []
     if request.power is not None:
         for member, passed in zip(request.members, times, strict=True):

@@ -1,8 +1,9 @@
-"""The limits of wind and gust: air that they close when planning, and what a planned route meets all the same."""
+"""The limits of wind and gust as a request puts them, and what a planned route meets."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -11,11 +12,11 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import NoRouteError, Problem
 from gcs_windplan.flight import fly_legs
+from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits, mean_strength, strength_of
 from gcs_windplan.planning.cost import rank_of
 from gcs_windplan.planning.request import Limits, Request
 from gcs_windplan.wind.field import WindField
 from gcs_windplan.wind.gridded import GriddedWind, mean_of
-from gcs_windplan.wind.limited import SPARE, LimitedWind, unlimited
 
 _FINER: Final = 8.0  # samples of a leg on the wind's own resolution
 _FEWEST, _MOST = 16, 2048  # samples of a leg
@@ -23,38 +24,51 @@ _BETWEEN: Final = 8  # moments between two of the wind's at which a site is look
 _ROUNDING: Final = 1e-9
 
 
-def limited(request: Request, spare: float = SPARE) -> Request:
-    """The request with winds that are closed where its limits forbid them; itself where it has no such limit.
-
-    They are closed at the share `spare` below the limits; at 0, at the limits themselves.
-    """
+def wind_limits(request: Request) -> WindLimits:
+    """The request's limits of wind and gust, and the gusts of its members, or of their mean where it has none."""
     limits = request.limits
-    if (limits.wind is None and limits.gust is None) or isinstance(request.wind, LimitedWind):
-        return request
-    most = math.inf if limits.wind is None else limits.wind
-    most_gust = math.inf if limits.gust is None else limits.gust
-    gusts = () if limits.gust is None else request.gusts
-    gridded = [one for one in gusts if isinstance(one, GriddedWind)]  # their first part is the gust: they add up
-    mean_gust = (mean_of(gridded),) if gridded and len(gridded) == len(gusts) else gusts
-    members = tuple(LimitedWind(one, most, gusts[k : k + 1], most_gust, spare) for k, one in enumerate(request.members))
-    return replace(request, wind=LimitedWind(request.wind, most, mean_gust, most_gust, spare), members=members)
+    if not limits.of_wind:
+        return NO_LIMITS
+    gusts: tuple[tuple[WindField, ...], ...] = tuple((one,) for one in request.gusts)
+    if not request.members and gusts:
+        gridded = [one for one in request.gusts if isinstance(one, GriddedWind)]
+        whole = len(gridded) == len(gusts)
+        gusts = ((mean_of(gridded),) if whole else request.gusts,)  # their first part is the gust: they add up
+    winds = request.members or (request.wind,)
+    everything = (*winds, *(() if limits.gust is None else request.gusts))
+    return WindLimits(
+        math.inf if limits.wind is None else limits.wind,
+        math.inf if limits.gust is None else limits.gust,
+        gusts,
+        exact=all(math.isinf(one.resolution) and len(one.times) < 2 for one in everything),
+    )
 
 
 def limits_broken_at_sites(request: Request, sites: FloatArray) -> list[Problem]:
     """A limit of gusts that the wind does not tell, and the sites (n, 3) that the limits close at all times."""
-    limits, wind = request.limits, limited(request).wind
+    limits, wind = request.limits, request.wind
     if limits.gust is not None and not request.gusts:
-        text = f"no gusts are told by the wind ({request.wind.name}): leave the limit out, or take a forecast with them"
+        text = f"the forecast has no gusts ({wind.name}): leave the limit out, or take a forecast with them"
         return [Problem(text, "limits.gust")]
-    if not isinstance(wind, LimitedWind):
+    if not limits.of_wind:
         return []
-    moments = _moments(wind.times)
-    closed = np.array([wind.closed(sites, moment) for moment in moments])
+    mean = wind_limits(replace(request, members=()))
+    moments = _moments(wind.times).tolist()
+    closed = np.array([mean.shares(0, wind.at(sites, moment), sites, moment) > 1.0 for moment in moments])
     problems = []
     for i in np.flatnonzero(closed.all(axis=0)):
-        speeds = np.array([wind.strengths(sites[i : i + 1], moment) for moment in moments])[:, :, 0]
+        site = sites[i : i + 1]
+        speeds = np.array([_strengths(wind, mean.gusts_of(0), site, moment) for moment in moments])[:, :, 0]
         problems.append(Problem(_too_windy(limits, *speeds.min(axis=0)), request.sites[i].field))
     return problems
+
+
+def _strengths(
+    wind: WindField, gusts: Sequence[WindField], points: FloatArray, seconds: float | FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The strength of the wind and of its gusts (n,) each [m/s]; NaN where it is not known, or there are none."""
+    unknown = np.full(len(points), np.nan)
+    return strength_of(wind.at(points, seconds)), mean_strength(gusts, points, seconds) if gusts else unknown
 
 
 def _moments(times: FloatArray) -> FloatArray:
@@ -97,16 +111,16 @@ class Strongest:
         """The strongest gust of all [m/s]; None where none are told."""
         return None if np.isnan(self.gusts).all() else float(np.nanmax(self.gusts))
 
-    def keeping(self, limits: Limits) -> int:
+    def within_limits(self, limits: Limits) -> int:
         """In how many members the whole route keeps the limits."""
-        return int(np.count_nonzero(~self._over(limits).any(axis=1)))
+        return int(np.count_nonzero(~self.over(limits).any(axis=1)))
 
-    def refuse_over(self, limits: Limits, robust: float) -> None:
+    def check_limits(self, limits: Limits, robust: float) -> None:
         """Raise `NoRouteError` where fewer members than the quantile `robust` asks for keep the limits."""
         members = len(self.winds)
-        if self.keeping(limits) > rank_of(robust, members):
+        if self.within_limits(limits) > rank_of(robust, members):
             return
-        leg = int(np.argmax(self._over(limits).sum(axis=0)))
+        leg = int(np.argmax(self.over(limits).sum(axis=0)))
         wind, gust = float(np.nanmax(self.winds[:, leg])), float(np.fmax.reduce(self.gusts[:, leg]))
         told = f"wind up to {wind:.2f} m/s" + (f", gusts up to {gust:.2f} m/s" if math.isfinite(gust) else "")
         raise NoRouteError(
@@ -115,7 +129,7 @@ class Strongest:
             {"wind": 1},
         )
 
-    def _over(self, limits: Limits) -> BoolArray:
+    def over(self, limits: Limits) -> BoolArray:
         """Which legs of which members (members, legs) break a limit."""
         wind = math.inf if limits.wind is None else limits.wind
         gust = math.inf if limits.gust is None else limits.gust
@@ -136,12 +150,11 @@ def strongest_along(
 
     Each leg at the vehicle's airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
     """
-    fields: tuple[WindField, ...] = tuple(unlimited(one) for one in request.members or (request.wind,))
+    fields: tuple[WindField, ...] = request.members or (request.wind,)
     winds, gusts = [], []
     for k, field in enumerate(fields):
         places, when = _samples(request, points, field, begin, airspeeds)
-        air = LimitedWind(field, gusts=request.gusts[k : k + 1])
-        wind, gust = air.strengths(places.reshape(-1, 3), when.ravel())
+        wind, gust = _strengths(field, request.gusts[k : k + 1], places.reshape(-1, 3), when.ravel())
         winds.append(np.fmax.reduce(wind.reshape(when.shape), axis=1))
         gusts.append(np.fmax.reduce(gust.reshape(when.shape), axis=1))
     return Strongest(np.array(winds), np.array(gusts))
@@ -153,7 +166,7 @@ def _samples(
     """Places (legs, k, 3) all along a route, and when they are passed in a wind (legs, k) [s since departure]."""
     times = fly_legs(points, wind, request.vehicle, begin, airspeeds)[1]
     if not np.isfinite(times).all():  # this member cannot fly it at all
-        times = fly_legs(points, unlimited(request.wind), request.vehicle, begin, airspeeds)[1]
+        times = fly_legs(points, request.wind, request.vehicle, begin, airspeeds)[1]
     longest = float(np.linalg.norm(np.diff(points, axis=0), axis=1).max())
     count = int(np.clip(math.ceil(_FINER * longest / wind.resolution), _FEWEST, _MOST))
     share = np.linspace(0.0, 1.0, count)

@@ -21,7 +21,7 @@ from gcs_windplan.errors import NoRouteError, Problem
 from gcs_windplan.flight import clock
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.request import MOST_TO_ORDER, Request
-from gcs_windplan.planning.route import Ready, cost_between, find_route, unshaped
+from gcs_windplan.planning.route import PlanningProblem, cost_between, find_route, unshaped
 from gcs_windplan.planning.search import find_open_path
 
 _MOMENTS: Final = (0.5, 1.0)  # of the flight in the order that is best at its begin: when changing costs are looked at
@@ -91,22 +91,24 @@ def best_order(costs: Costs, begin: float = 0.0) -> tuple[int, ...] | None:
     return tuple(via + 1 for via in reversed(order))
 
 
-def put_in_order(ready: Ready, choice: CostChoice, begin: float = 0.0) -> tuple[Ready, tuple[str, ...]]:
+def optimise_order(
+    problem: PlanningProblem, choice: CostChoice, begin: float = 0.0
+) -> tuple[PlanningProblem, tuple[str, ...]]:
     """The same with its vias in the order that costs least, and a note that says so; as it is unless `order` is free.
 
     Over an ensemble the order is that for the members' mean. Raises `NoRouteError` that names a via which cannot be
     reached or left.
     """
-    request = ready.request
+    request = problem.request
     if request.order == "given" or len(request.via) < 2:
-        return ready, ()
-    mean = ready.in_the_mean()
+        return problem, ()
+    mean = problem.in_the_mean()
     order = _best_order(mean, choice, begin)
     chosen, given = _cost_in(mean, choice, begin, order), _cost_in(mean, choice, begin, tuple(sorted(order)))
     if not chosen < given * (1 - _WORTH):
-        return ready, ("order of the vias: as given, which is the best one",)
+        return problem, ("order of the vias: as given, which is the best one",)
     numbers = ", ".join(map(str, order))
-    return _reordered(ready, order), (f"order of the vias: {numbers}; {_saving(choice, chosen, given)}",)
+    return _reordered(problem, order), (f"order of the vias: {numbers}; {_saving(choice, chosen, given)}",)
 
 
 def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
@@ -126,17 +128,17 @@ def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
     return problems
 
 
-def _best_order(ready: Ready, choice: CostChoice, begin: float) -> tuple[int, ...]:
+def _best_order(problem: PlanningProblem, choice: CostChoice, begin: float) -> tuple[int, ...]:
     """The best order of the vias by costs on the graph. Raises `NoRouteError`."""
-    costs, errors = _costs(ready, choice, np.array([begin]))
+    costs, errors = _costs(problem, choice, np.array([begin]))
     order = best_order(costs, begin)
     if order is None:
-        raise _no_order(ready.request, costs, errors)
-    if ready.windy.times is None:
+        raise _no_order(problem.request, costs, errors)
+    if problem.graph.steady is not None:
         return order
     lasting = sum(costs.seconds[0, a, b] for a, b in pairwise((0, *order, len(order) + 1)))
     later = begin + lasting * np.array(_MOMENTS)
-    more = _costs(ready, choice, later[later < ready.windy.ends])[0]
+    more = _costs(problem, choice, later[later < problem.graph.ends])[0]
     parts = [np.concatenate(part) for part in zip(_parts(costs), _parts(more), strict=True)]
     return best_order(Costs(*parts), begin) or order
 
@@ -145,17 +147,19 @@ def _parts(costs: Costs) -> tuple[FloatArray, FloatArray, FloatArray]:
     return costs.moments, costs.costs, costs.seconds
 
 
-def _costs(ready: Ready, choice: CostChoice, moments: FloatArray) -> tuple[Costs, dict[tuple[int, int], NoRouteError]]:
+def _costs(
+    problem: PlanningProblem, choice: CostChoice, moments: FloatArray
+) -> tuple[Costs, dict[tuple[int, int], NoRouteError]]:
     """The costs between the sites on the graph, and why there is no way where there is none."""
-    sites = ready.sites
+    sites = problem.sites
     shape = len(moments), len(sites), len(sites)
     costs, seconds = np.full(shape, np.inf), np.full(shape, np.inf)
     errors = {}
     for m, moment in enumerate(moments.tolist()):
         for a, b in ((a, b) for a in range(len(sites) - 1) for b in range(1, len(sites)) if a != b):
-            cost = cost_between(ready, choice, sites[a], sites[b], moment)
+            cost = cost_between(problem, choice, sites[a], sites[b], moment)
             try:
-                path = find_open_path(ready.windy, cost, sites[a], sites[b], moment)
+                path = find_open_path(problem.graph, cost, sites[a], sites[b], moment)
             except NoRouteError as error:
                 errors[a, b] = error
                 continue
@@ -181,20 +185,19 @@ def _no_order(request: Request, costs: Costs, errors: dict[tuple[int, int], NoRo
     return NoRouteError("no order of the vias can be flown: each can be reached and left, but not all on one way", {})
 
 
-def _cost_in(ready: Ready, choice: CostChoice, begin: float, order: tuple[int, ...]) -> float:
+def _cost_in(problem: PlanningProblem, choice: CostChoice, begin: float, order: tuple[int, ...]) -> float:
     """What the graph's route in an order costs, infinite where it cannot be flown."""
     try:
-        return find_route(_reordered(ready, order), choice, begin, unshaped).cost
+        return find_route(_reordered(problem, order), choice, begin, unshaped).cost
     except NoRouteError:
         return float("inf")
 
 
-def _reordered(ready: Ready, order: tuple[int, ...]) -> Ready:
+def _reordered(problem: PlanningProblem, order: tuple[int, ...]) -> PlanningProblem:
     """The same with its vias (numbered from 1) in an order."""
-    via = tuple(ready.request.via[number - 1] for number in order)
-    sites = ready.sites[[0, *order, len(order) + 1]]
-    request, asked = (replace(one, via=via) for one in (ready.request, ready.asked))
-    return replace(ready, sites=sites, request=request, asked=asked)
+    via = tuple(problem.request.via[number - 1] for number in order)
+    sites = problem.sites[[0, *order, len(order) + 1]]
+    return replace(problem, sites=sites, request=replace(problem.request, via=via))
 
 
 def _saving(choice: CostChoice, chosen: float, given: float) -> str:

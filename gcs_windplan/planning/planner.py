@@ -16,28 +16,28 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import BatteryError, NoRouteError, RequestError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
-from gcs_windplan.planning.battery import BatteryUse, battery_use, refuse_overdrawn
+from gcs_windplan.planning.battery import BatteryUse, battery_use, check_reserve
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limited, limits_broken_at_sites, strongest_along
-from gcs_windplan.planning.order import put_in_order, too_many_or_equal
+from gcs_windplan.planning.limits import Strongest, limits_broken_at_sites, strongest_along, wind_limits
+from gcs_windplan.planning.order import optimise_order, too_many_or_equal
 from gcs_windplan.planning.request import Request, Roadmap
-from gcs_windplan.planning.returns import WaysHome, home_from_the_end, refuse_stranded, ways_home
-from gcs_windplan.planning.route import FoundRoute, Ready, find_route, power_of, unshaped
-from gcs_windplan.planning.search import WindyVeil, blow
+from gcs_windplan.planning.returns import WaysHome, check_return, home_from_the_end, ways_home
+from gcs_windplan.planning.route import FoundRoute, PlanningProblem, find_route, power_of, unshaped
+from gcs_windplan.planning.search import NodeWinds, sample_wind
 from gcs_windplan.planning.shaping import shape, shape_quickly
 from gcs_windplan.planning.sites import (
+    check_graph_size,
     choose_area,
     choose_layers,
     choose_nodes,
     choose_spacing,
-    refuse_unwieldy,
-    stand_sites,
+    place_sites,
     windless_sites,
 )
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, lay_grid, lay_prm
-from gcs_windplan.planning.waiting import until_it_opens, where_it_pays
+from gcs_windplan.planning.waiting import later_departure_note, next_feasible_departure
 from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Extent
 
@@ -106,30 +106,30 @@ def plan_route(request: Request) -> Plan:
     `TerrainError` where the data do not cover the place, `NoRouteError` where no route exists, and `BatteryError` where
     the best one breaks the battery's reserve, or leads to where the vehicle cannot come home from.
     """
-    ready = prepare(request)
-    plan = plan_ready(ready, request.cost)
+    problem = pose_problem(request)
+    plan = solve(problem, request.cost)
     try:
         refuse_unsafe(plan)
     except BatteryError as error:
-        raise BatteryError(f"{error}{_thriftier(ready)}") from error
+        raise BatteryError(f"{error}{_lower_energy_hint(problem)}") from error
     return plan
 
 
 def refuse_unsafe(plan: Plan) -> None:
     """Raise `BatteryError` for a plan that its battery does not carry through, or not home."""
-    refuse_overdrawn(plan.battery)
+    check_reserve(plan.battery)
     wanted = plan.request.limits.way_home
     if wanted or (wanted is None and plan.request.finish == "return"):
-        refuse_stranded(plan.ways_home, plan.battery, plan.flight)
+        check_return(plan.ways_home, plan.battery, plan.flight)
 
 
 def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
     """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
-    ready = prepare(request)
-    return [plan_ready(ready, choice) for choice in choices]
+    problem = pose_problem(request)
+    return [solve(problem, choice) for choice in choices]
 
 
-def prepare(request: Request) -> Ready:
+def pose_problem(request: Request) -> PlanningProblem:
     """Stand the sites, lay the veil, and let the wind blow on it. Raises as `plan_route` does."""
     rules = Clearance(
         request.terrain,
@@ -140,7 +140,7 @@ def prepare(request: Request) -> Ready:
         request.collision_test,
     )
     layers = choose_layers(request)
-    sites, problems = stand_sites(request, rules, layers)
+    sites, problems = place_sites(request, rules, layers)
     problems = problems or windless_sites(request, sites) or limits_broken_at_sites(request, sites)
     problems = problems or too_many_or_equal(request, sites)
     if problems:
@@ -148,92 +148,92 @@ def prepare(request: Request) -> Ready:
     begin = time.perf_counter()
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
-    bound = limited(request)
-    windy = blow(_lay_veil(request, rules, layers, sites, area), bound.wind, bound.members)
+    veil = _lay_veil(request, rules, layers, sites, area)
+    graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
+    mean = replace(request, members=())
+    mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
     seconds = time.perf_counter() - begin
-    return Ready(bound, request, rules, sites, windy, seconds, power_of(request, windy, sites))
+    return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
 
 
-def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
+def solve(problem: PlanningProblem, choice: CostChoice, begin: float = 0.0) -> Plan:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
     """
-    ordered, notes = put_in_order(ready, choice, begin)
+    ordered, notes = optimise_order(problem, choice, begin)
     plan = _quickest(ordered, choice, begin)
     return replace(plan, notes=(*notes, *plan.notes))
 
 
-def _quickest(ready: Ready, choice: CostChoice, begin: float) -> Plan:
+def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float) -> Plan:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
-    if choice.name != "time" or not ready.request.free_airspeed or ready.request.airframe is None:
-        return _planned(ready, choice, begin)
-    power = ready.request.airframe.power
-    quick, worth = quickest_within(
-        lambda worth: _planned(ready, choice, begin, worth, shape_quickly),
+    if choice.name != "time" or not problem.request.free_airspeed or problem.request.airframe is None:
+        return _planned(problem, choice, begin)
+    power = problem.request.airframe.power
+    quick, cost_index = quickest_within(
+        lambda cost_index: _planned(problem, choice, begin, cost_index, shape_quickly),
         lambda plan: math.inf if plan.battery is None else plan.battery.missing,
         0.0,
-        float(power.watts(ready.request.vehicle.airspeed, 0.0)),
+        float(power.watts(problem.request.vehicle.airspeed, 0.0)),
     )
-    plan = _planned(ready, choice, begin, worth)
+    plan = _planned(problem, choice, begin, cost_index)
     fits = plan.battery is not None and plan.battery.missing == 0
-    return plan if fits or worth == 0.0 else quick
+    return plan if fits or cost_index == 0.0 else quick
 
 
 def _planned(
-    ready: Ready,
+    problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
-    worth: float = math.inf,
+    cost_index: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
 ) -> Plan:
-    """The plan for one worth of time.
+    """The plan for one cost index.
 
     Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the
     whole: the one for the members' mean is flown in all members too, and the better one is taken.
     """
-    request = ready.request
+    request = problem.request
     try:
-        found, spread = _best_route(ready, choice, begin, worth, shaping)
+        found, spread = _best_route(problem, choice, begin, cost_index, shaping)
     except NoRouteError as error:
         raise NoRouteError(
-            f"{error}{until_it_opens(begin, ready.windy.ends, partial(_lasting, ready))}", error.cuts
+            f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem))}", error.cuts
         ) from error
     flight = fly(
-        found.points, request.frame, request.terrain, ready.flown.wind, request.vehicle, begin, request.power,
+        found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
         found.airspeeds,
     )  # fmt: skip
     effort = Effort(
-        ready.windy.veil.size, found.expanded, found.vertices, ready.seconds, found.search_seconds,
+        problem.graph.veil.size, found.expanded, found.vertices, problem.seconds, found.search_seconds,
         found.shaping_seconds,
     )  # fmt: skip
-    notes = _notes(request, ready.windy)
+    notes = _notes(request, problem.graph.winds_between(begin, found.arrival))
     if found.deferred:
-        notes += where_it_pays(found.arrival - begin, begin, partial(_lasting, ready))
+        notes += later_departure_note(found.arrival - begin, begin, partial(_lasting, problem))
     en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
-    battery = battery_use(request, flight, en_route, _home_again(ready, flight, begin))
+    battery = battery_use(request, flight, en_route, _home_again(problem, flight, begin))
     ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
-        ways = ways_home(ready, flight, battery, request.airframe.battery.capacity, begin)
-    if ready.flown is not ready.asked:
-        strongest = strongest_along(ready.asked, found.points, begin, found.airspeeds)
-        strongest.refuse_over(request.limits, request.robust)
-    return Plan(
-        ready.asked, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest
-    )
+        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin)
+    if problem.graph.limits:
+        strongest = strongest_along(request, found.points, begin, found.airspeeds)
+        strongest.check_limits(request.limits, request.robust)
+    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest)
 
 
-def _home_again(ready: Ready, flight: Flight, begin: float) -> float:
+def _home_again(problem: PlanningProblem, flight: Flight, begin: float) -> float:
     """What the return at the end takes [J]; nothing where there is none, or nobody knows."""
-    returns = ready.request.finish == "return" and ready.power is not None
-    return home_from_the_end(ready, flight, begin) if returns else 0.0
+    returns = problem.request.finish == "return" and problem.power is not None
+    return home_from_the_end(problem, flight, begin) if returns else 0.0
 
 
-def _thriftier(ready: Ready) -> str:
+def _lower_energy_hint(problem: PlanningProblem) -> str:
     """Whether the route of least energy would do, in words."""
     choice = CostChoice("energy")
     try:
-        plan = plan_ready(ready, choice)
+        plan = solve(problem, choice)
         refuse_unsafe(plan)
     except (BatteryError, NoRouteError):
         return ""
@@ -245,21 +245,21 @@ def _thriftier(ready: Ready) -> str:
 
 
 def _best_route(
-    ready: Ready, choice: CostChoice, begin: float, worth: float, shaping: Callable[..., FloatArray]
+    problem: PlanningProblem, choice: CostChoice, begin: float, cost_index: float, shaping: Callable[..., FloatArray]
 ) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
-    request = ready.request
+    request = problem.request
     if not request.members:
-        return find_route(ready, choice, begin, shaping, worth), None
-    ways = [ready, ready.in_the_mean()] if choice.name in ("time", "energy") else [ready]
+        return find_route(problem, choice, begin, shaping, cost_index), None
+    ways = [problem, problem.in_the_mean()] if choice.name in ("time", "energy") else [problem]
     candidates, error = [], None
     for way in ways:
         try:
-            found = find_route(way, choice, begin, shaping, worth)
+            found = find_route(way, choice, begin, shaping, cost_index)
         except NoRouteError as no_route:
             error = error or no_route
             continue
-        spread = spread_of(ready.flown, found.points, begin, found.airspeeds)
+        spread = spread_of(problem.request, found.points, begin, found.airspeeds)
         assert spread is not None
         candidates.append((found, spread))
     if not candidates:
@@ -281,17 +281,17 @@ def _lay_veil(
     request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent
 ) -> GridVeil | PrmVeil:
     """The veil that the request asks for."""
-    refuse_unwieldy(request, area, layers)
+    check_graph_size(request, area, layers)
     graph = request.graph
     if isinstance(graph, Roadmap):
         return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
     return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
 
 
-def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
+def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
     """What a pilot must know: models that flatter, tests that miss, what the vehicle does not hold."""
     notes = []
-    strongest = float(np.nanmax(np.hypot(windy.winds[..., 0], windy.winds[..., 1]), initial=0.0))
+    strongest = float(np.nanmax(np.hypot(air.winds[..., 0], air.winds[..., 1]), initial=0.0))
     if request.vehicle.speed_model == "paper":
         text = "the speed model `paper` counters cross wind for free: its times are some percent too short"
         if strongest > request.vehicle.airspeed / 2:
@@ -308,11 +308,11 @@ def _notes(request: Request, windy: WindyVeil) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _lasting(ready: Ready, begin: float) -> float:
+def _lasting(problem: PlanningProblem, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        found = find_route(ready, CostChoice("time"), begin, unshaped)
+        found = find_route(problem, CostChoice("time"), begin, unshaped)
     except (NoRouteError, WindError):
         return float("inf")
-    spread = spread_of(ready.flown, found.points, begin, found.airspeeds)
-    return found.arrival - begin if spread is None else spread.at(ready.request.robust)
+    spread = spread_of(problem.request, found.points, begin, found.airspeeds)
+    return found.arrival - begin if spread is None else spread.at(problem.request.robust)

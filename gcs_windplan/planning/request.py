@@ -96,6 +96,16 @@ class Limits:
     reserve_seconds: float | None = None
     way_home: bool | None = None
 
+    @property
+    def of_wind(self) -> bool:
+        """Whether wind or gusts are limited."""
+        return self.wind is not None or self.gust is not None
+
+
+def _unlocated(problem: Problem) -> Problem:
+    """The problem as it is: a request made in Python stands in no file."""
+    return problem
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
@@ -144,7 +154,7 @@ class Request:
     gusts: tuple[WindField, ...] = ()
     airframe: Airframe | None = None
     free_airspeed: bool = False
-    locate: Callable[[Problem], Problem] = lambda problem: problem
+    locate: Callable[[Problem], Problem] = _unlocated
 
     @property
     def sites(self) -> tuple[Site, ...]:

@@ -13,7 +13,7 @@ from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, clock
 from gcs_windplan.planning.battery import BatteryUse
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.route import Ready, cost_between
+from gcs_windplan.planning.route import PlanningProblem, cost_between
 from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.planning.sites import choose_layers, site_points
 from gcs_windplan.vehicle import air_density
@@ -22,7 +22,7 @@ _ENERGY = CostChoice("energy")
 
 
 @dataclass(frozen=True, slots=True)
-class NoReturn:
+class PointOfNoReturn:
     """Where the way home becomes too long: [m] level along the route, [s] after its first waypoint, on which leg."""
 
     distance: float
@@ -34,15 +34,15 @@ class NoReturn:
 class WaysHome:
     """What flying home takes from each waypoint, landing included [J]; infinite where there is no way.
 
-    `diversions` are to the rally point that takes least, infinite where there is none. `spare` [J] is what the battery
+    `alternates` are to the rally point that takes least, infinite where there is none. `spare` [J] is what the battery
     holds above the reserve when the vehicle has flown from a waypoint to the nearer of both; negative where it cannot.
-    `no_return` is where home itself comes out of reach, None where it never does.
+    `point_of_no_return` is where home itself comes out of reach, None where it never does.
     """
 
     energies: tuple[float, ...]
-    diversions: tuple[float, ...]
+    alternates: tuple[float, ...]
     spare: tuple[float, ...]
-    no_return: NoReturn | None
+    point_of_no_return: PointOfNoReturn | None
 
     @property
     def stranded(self) -> int | None:
@@ -50,38 +50,40 @@ class WaysHome:
         return next((i + 1 for i, spare in enumerate(self.spare) if spare < 0), None)
 
 
-def ways_home(ready: Ready, flight: Flight, use: BatteryUse, capacity: float, begin: float = 0.0) -> WaysHome:
+def ways_home(
+    problem: PlanningProblem, flight: Flight, use: BatteryUse, capacity: float, begin: float = 0.0
+) -> WaysHome:
     """The ways home from each waypoint of a flight that begins at `begin` [s since departure].
 
     Found on the veil, so they keep all limits; paths are not shaped, so they err on the long side. Over an ensemble in
     the members' mean.
     """
-    ready = ready.in_the_mean()
+    problem = problem.in_the_mean()
     points = np.array([(w.east, w.north, w.altitude) for w in flight.waypoints])
     times = begin + np.array([w.seconds for w in flight.waypoints])
-    request = ready.request
-    targets = [ready.sites[0], *site_points(request, request.rally, choose_layers(request))]
-    table = np.array([_energies(ready, points, times, target) for target in targets])
-    home, diversions = table[0], table[1:].min(axis=0, initial=math.inf)
+    request = problem.request
+    targets = [problem.sites[0], *site_points(request, request.rally, choose_layers(request))]
+    table = np.array([_energies(problem, points, times, target) for target in targets])
+    home, alternates = table[0], table[1:].min(axis=0, initial=math.inf)
     drawn = (1 - np.array(use.left)) * capacity
-    spare = use.allowed - drawn - np.minimum(home, diversions)
+    spare = use.allowed - drawn - np.minimum(home, alternates)
     return WaysHome(
         tuple(home.tolist()),
-        tuple(diversions.tolist()),
+        tuple(alternates.tolist()),
         tuple(spare.tolist()),
-        _no_return(flight, use.allowed - drawn - home),
+        _point_of_no_return(flight, use.allowed - drawn - home),
     )
 
 
-def home_from_the_end(ready: Ready, flight: Flight, begin: float = 0.0) -> float:
+def home_from_the_end(problem: PlanningProblem, flight: Flight, begin: float = 0.0) -> float:
     """What flying home from the last waypoint and landing there takes [J]; infinite where there is no way."""
-    ready = ready.in_the_mean()
+    problem = problem.in_the_mean()
     last = flight.waypoints[-1]
     point = np.array([[last.east, last.north, last.altitude]])
-    return float(_energies(ready, point, np.array([begin + last.seconds]), ready.sites[0])[0])
+    return float(_energies(problem, point, np.array([begin + last.seconds]), problem.sites[0])[0])
 
 
-def refuse_stranded(ways: WaysHome | None, use: BatteryUse | None, flight: Flight) -> None:
+def check_return(ways: WaysHome | None, use: BatteryUse | None, flight: Flight) -> None:
     """Raise `BatteryError` for a flight from which home and all rally points come out of reach."""
     number = None if ways is None else ways.stranded
     if ways is None or use is None or number is None:
@@ -91,8 +93,8 @@ def refuse_stranded(ways: WaysHome | None, use: BatteryUse | None, flight: Fligh
     where = f"from waypoint {number} ({distance / 1000:.2f} km, {clock(waypoint.seconds)} min) neither home nor a rally"
     if math.isinf(spare):
         raise BatteryError(f"{where} point can be reached: the wind or the terrain closes every way back.")
-    if ways.no_return is not None:
-        passed = f"; the point of no return lies at {ways.no_return.distance / 1000:.2f} km"
+    if ways.point_of_no_return is not None:
+        passed = f"; the point of no return lies at {ways.point_of_no_return.distance / 1000:.2f} km"
     else:
         passed = ""
     raise BatteryError(
@@ -101,19 +103,19 @@ def refuse_stranded(ways: WaysHome | None, use: BatteryUse | None, flight: Fligh
     )
 
 
-def _energies(ready: Ready, points: FloatArray, times: FloatArray, target: FloatArray) -> FloatArray:
+def _energies(problem: PlanningProblem, points: FloatArray, times: FloatArray, target: FloatArray) -> FloatArray:
     """The energy [J] from points (n, 3) at times (n,) to a target (3,) and down to the ground there."""
-    return np.array([_energy(ready, point, target, time) for point, time in zip(points, times, strict=True)])
+    return np.array([_energy(problem, point, target, time) for point, time in zip(points, times, strict=True)])
 
 
-def _energy(ready: Ready, point: FloatArray, target: FloatArray, time: float) -> float:
+def _energy(problem: PlanningProblem, point: FloatArray, target: FloatArray, time: float) -> float:
     """The same from one point; infinite where there is no way."""
-    down = _landing(ready, target)
+    down = _landing(problem, target)
     if np.linalg.norm(target - point) < 1e-6:
         return down
-    cost = cost_between(ready, _ENERGY, point, target, time)
+    cost = cost_between(problem, _ENERGY, point, target, time)
     try:
-        path = find_open_path(ready.windy, cost, point, target, time)
+        path = find_open_path(problem.graph, cost, point, target, time)
     except (NoRouteError, WindError):
         return math.inf
     aside = 0.0
@@ -124,9 +126,9 @@ def _energy(ready: Ready, point: FloatArray, target: FloatArray, time: float) ->
     return path.cost + aside + down
 
 
-def _landing(ready: Ready, target: FloatArray) -> float:
+def _landing(problem: PlanningProblem, target: FloatArray) -> float:
     """What sinking from a target (3,) to the ground under it takes [J]; a fixed-wing circles down as fast."""
-    request = ready.request
+    request = problem.request
     assert request.power is not None
     ground = float(request.terrain.heights_at(target[None])[0])
     airspeed = 0.0 if request.vehicle.hovers else request.vehicle.airspeed
@@ -134,15 +136,15 @@ def _landing(ready: Ready, target: FloatArray) -> float:
     return watts * max(float(target[2]) - ground, 0.0) / request.vehicle.descent
 
 
-def _no_return(flight: Flight, spare: FloatArray) -> NoReturn | None:
+def _point_of_no_return(flight: Flight, spare: FloatArray) -> PointOfNoReturn | None:
     """Where what is spare on the way home (n,) [J] becomes negative, linear along each leg."""
     flown = np.append(0.0, np.cumsum([leg.distance for leg in flight.legs]))
     arrivals = [waypoint.seconds for waypoint in flight.waypoints]
     if spare[0] < 0:
-        return NoReturn(0.0, 0.0, 1)
+        return PointOfNoReturn(0.0, 0.0, 1)
     for i, (before, after) in enumerate(pairwise(spare.tolist())):
         if after < 0:
             share = before / (before - after) if math.isfinite(after) else 0.0
             distance = flown[i] + share * (flown[i + 1] - flown[i])
-            return NoReturn(float(distance), arrivals[i] + share * (arrivals[i + 1] - arrivals[i]), i + 1)
+            return PointOfNoReturn(float(distance), arrivals[i] + share * (arrivals[i + 1] - arrivals[i]), i + 1)
     return None

@@ -63,7 +63,7 @@ def choose_nodes(request: Request, area: Extent) -> int:
     return max(2, round(SHARE_OF_GRID * cells))
 
 
-def refuse_unwieldy(request: Request, area: Extent, layers: Sequence[float]) -> None:
+def check_graph_size(request: Request, area: Extent, layers: Sequence[float]) -> None:
     """Raise `RequestError` for a veil without any node, or with more nodes or edges than fit into memory."""
     width, depth = area.east - area.west, area.north - area.south
     if isinstance(request.graph, Roadmap):
@@ -100,7 +100,7 @@ def site_points(request: Request, sites: Sequence[Site], layers: Sequence[float]
     return points
 
 
-def stand_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
+def place_sites(request: Request, rules: Clearance, layers: Sequence[float]) -> tuple[FloatArray, list[Problem]]:
     """Start, vias and goal as points (n, 3) [m], and everything that is wrong with them and with places beside."""
     problems = _limits(request, layers)
     points = site_points(request, request.sites, layers)

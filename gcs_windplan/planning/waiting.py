@@ -21,7 +21,7 @@ _TRIED_EVERY: Final = 600.0  # [s] later departures that are tried where no rout
 _MOST_TRIED: Final = 24
 
 
-def where_it_pays(now: float, begin: float, lasting: Lasting) -> tuple[str, ...]:
+def later_departure_note(now: float, begin: float, lasting: Lasting) -> tuple[str, ...]:
     """A note if leaving later than `begin` [s] arrives earlier than a flight of `now` [s] that begins there."""
     waits = [share * now for share in _WAITS]
     arrivals = [wait + lasting(begin + wait) for wait in waits]
@@ -34,7 +34,7 @@ def where_it_pays(now: float, begin: float, lasting: Lasting) -> tuple[str, ...]
     )
 
 
-def until_it_opens(begin: float, ends: float, lasting: Lasting) -> str:
+def next_feasible_departure(begin: float, ends: float, lasting: Lasting) -> str:
     """When a route exists if none does at `begin` [s], up to the forecast's end at `ends` [s], in words; or nothing."""
     if not np.isfinite(ends):
         return ""

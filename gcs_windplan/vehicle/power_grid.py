@@ -22,7 +22,7 @@ _CHOICES: Final = 9  # airspeeds that an edge or leg may choose from: between th
 
 
 def tabulate(
-    power: PowerModel, vehicle: Vehicle, airspeeds: FloatArray, heights: tuple[float, float], worth: float = 0.0
+    power: PowerModel, vehicle: Vehicle, airspeeds: FloatArray, heights: tuple[float, float], cost_index: float = 0.0
 ) -> PowerGrid:
     """The power of a vehicle between two heights above mean sea level [m], and the airspeeds (k,) [m/s] to choose from.
 
@@ -44,7 +44,7 @@ def tabulate(
         climb_step=step,
         airspeed_step=float(speeds[1]),
         airspeeds=np.ascontiguousarray(airspeeds, dtype=np.float64),
-        worth=worth,
+        cost_index=cost_index,
     )
 
 

@@ -6,7 +6,6 @@ from .forecast import Forecast as Forecast
 from .forecast import Wanted as Wanted
 from .forecast import read_forecast as read_forecast
 from .gridded import GriddedWind as GriddedWind
-from .limited import LimitedWind as LimitedWind
 from .profile import LogLaw as LogLaw
 from .profile import PowerLaw as PowerLaw
 from .profile import ProfileLaw as ProfileLaw

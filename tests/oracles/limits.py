@@ -18,7 +18,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 from gcs_windplan.planning.cost import CostChoice, LegCost
-from gcs_windplan.planning.search import blow, find_path
+from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.shaping import shape
 from gcs_windplan.planning.veil import lay_grid
 from gcs_windplan.scene import Clearance
@@ -72,7 +72,7 @@ class Limit:
         start, goal = (np.array([*place, 0.0]) for place in (self.start, self.goal))
         vehicle = Vehicle(self.airspeed, 9.0, 9.0, speed_model=self.model)
         cost = LegCost(CostChoice("time"), self.wind, vehicle, veil.edge_length, math.dist(self.start, self.goal))
-        path = find_path(blow(veil, self.wind), cost, start, goal).points
+        path = find_path(sample_wind(veil, self.wind), cost, start, goal).points
         return cost, path, shape(path, cost, _GROUND)
 
 

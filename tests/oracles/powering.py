@@ -28,22 +28,22 @@ def naive_table(grid):
     return watts
 
 
-def naive_price(vehicle, vector, height, wind, watts, worth=0.0) -> float:
+def naive_price(vehicle, vector, height, wind, watts, cost_index=0.0) -> float:
     """Energy and worth of time [J] of a leg in one wind: the air sees the velocity over ground less the wind."""
     length = float(np.linalg.norm(vector))
     seconds = length * naive_slowness(vehicle, np.asarray(vector) / length, wind)
     if not math.isfinite(seconds):
         return math.inf
     through_air = np.asarray(vector) / seconds - np.asarray(wind)
-    return seconds * (watts(height, float(through_air[2]), math.hypot(*through_air[:2])) + worth)
+    return seconds * (watts(height, float(through_air[2]), math.hypot(*through_air[:2])) + cost_index)
 
 
-def naive_edge_price(vehicle, airspeeds, start, end, wind_a, wind_b, watts, worth=0.0) -> float:
+def naive_edge_price(vehicle, airspeeds, start, end, wind_a, wind_b, watts, cost_index=0.0) -> float:
     """The trapezoidal rule over both winds, at the best of the airspeeds."""
     vector = np.asarray(end) - np.asarray(start)
     prices = []
     for airspeed in airspeeds:
         flown = replace(vehicle, airspeed=float(airspeed))
         ends = ((start[2], wind_a), (end[2], wind_b))
-        prices.append(sum(naive_price(flown, vector, height, wind, watts, worth) for height, wind in ends) / 2)
+        prices.append(sum(naive_price(flown, vector, height, wind, watts, cost_index) for height, wind in ends) / 2)
     return min(prices)

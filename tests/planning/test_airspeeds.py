@@ -21,7 +21,7 @@ tenth = 0.1  # [m/s]
 AIRFRAMES = ["small_quadcopter", "large_multirotor", "fixed_wing"]
 
 
-def brute_force(points, wind, vehicle, power, between, worth=0.0, begin=0.0):
+def brute_force(points, wind, vehicle, power, between, cost_index=0.0, begin=0.0):
     """Each leg at every 2 cm/s, one leg after the other, the cheapest kept."""
     best, clock = [], begin
     for start, end in pairwise(points):
@@ -31,7 +31,7 @@ def brute_force(points, wind, vehicle, power, between, worth=0.0, begin=0.0):
             times = fly_legs(leg, wind, flown, clock)[1]
             if not np.isfinite(times[-1]):
                 continue
-            joules = leg_energies(leg, times, wind, flown, power)[0] + worth * (times[1] - times[0])
+            joules = leg_energies(leg, times, wind, flown, power)[0] + cost_index * (times[1] - times[0])
             least = min(least, (joules, float(airspeed), float(times[-1])))
         best.append(least)
         clock = least[2]
@@ -46,15 +46,15 @@ def legs_of(seed: int, count: int = 5, climb: float = 10.0) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", AIRFRAMES)
-@pytest.mark.parametrize("worth", [0.0, 300.0])
+@pytest.mark.parametrize("cost_index", [0.0, 300.0])
 @pytest.mark.parametrize("seed", [1])
-def test_it_is_what_a_scan_finds(name, worth, seed):
+def test_it_is_what_a_scan_finds(name, cost_index, seed):
     airframe = read_airframe(f"missions/vehicles/{name}.yaml")
     wind = WavyWind(seed, strength=6.0)
     between = (20.0 if name == "fixed_wing" else 4.0, airframe.maximum_airspeed)
     points = legs_of(seed)
-    found = best_airspeeds(points, wind, airframe.vehicle, airframe.power, between, worth=worth)
-    scanned = brute_force(points, wind, airframe.vehicle, airframe.power, between, worth)
+    found = best_airspeeds(points, wind, airframe.vehicle, airframe.power, between, cost_index=cost_index)
+    scanned = brute_force(points, wind, airframe.vehicle, airframe.power, between, cost_index)
     assert np.abs(found - scanned[:, 1]).max() <= tenth
 
 

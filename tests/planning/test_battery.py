@@ -13,7 +13,7 @@ from gcs_windplan.assessment import assess_plan
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import BatteryError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
-from gcs_windplan.planning.battery import Allowance, BatteryUse, allowances_of, refuse_overdrawn
+from gcs_windplan.planning.battery import Allowance, BatteryUse, allowances_of, check_reserve
 from gcs_windplan.planning.export import flown_duration
 from gcs_windplan.planning.request import Limits
 from gcs_windplan.wind import Calm
@@ -112,12 +112,12 @@ def test_the_strictest_rule_counts_and_all_that_are_broken_are_named():
     with pytest.raises(
         BatteryError, match=r"takes 60 Wh, and with what must be left the battery gives 50 of 80 usable"
     ):
-        refuse_overdrawn(use)
+        check_reserve(use)
     with pytest.raises(BatteryError, match=r"it breaks limits\.battery \(50 % left of 100 Wh\) by 10 Wh\. Another"):
-        refuse_overdrawn(use)
+        check_reserve(use)
     with pytest.raises(BatteryError, match=r"breaks the reserve by 6 Wh and limits\.battery .* by 20 Wh"):
-        refuse_overdrawn(replace(use, total=70 * WATT_HOUR))
-    refuse_overdrawn(replace(use, total=50 * WATT_HOUR))
+        check_reserve(replace(use, total=70 * WATT_HOUR))
+    check_reserve(replace(use, total=50 * WATT_HOUR))
     hopeless = BatteryUse((), 3600.0, 3600.0, (Allowance("limits.reserve (60 min at 300 W)", -1e6),))
     assert (hopeless.allowed, hopeless.missing) == (0.0, 3600.0)
 

@@ -13,7 +13,7 @@ from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.mission import Command
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.route import _without_hairs
+from gcs_windplan.planning.route import _merge_short_legs
 from gcs_windplan.scene import Clearance
 from gcs_windplan.vehicle import air_density
 from gcs_windplan.vehicle.power_grid import airspeed_choices
@@ -71,8 +71,8 @@ def test_least_time_uses_what_the_battery_gives(asked, plans):
 def test_quickest_within_on_a_curve():
     """Energy falls as time is worth less: the answer lies where it is all used, as closely as six halvings find it."""
 
-    def find(worth: float) -> tuple[float, float]:
-        speed = min((worth / 2 + 1.0) ** (1 / 3), 20.0)  # over 1 km 1000 v² J and 1000/v s: dE/dv = worth/v²
+    def find(cost_index: float) -> tuple[float, float]:
+        speed = min((cost_index / 2 + 1.0) ** (1 / 3), 20.0)  # over 1 km 1000 v² J and 1000/v s: dE/dv = worth/v²
         return 1000.0 / speed, 1000.0 * speed**2
 
     for allowed in (5e3, 2e4, 1e5, 1.6e5):
@@ -121,8 +121,8 @@ def test_a_wing_keeps_away_from_its_stall(gallery):
 def test_a_leg_of_a_hair_is_joined_where_what_is_left_stays_clear():
     rules = Clearance(rough_dem(1, relief=0.0), 20.0)
     line = np.array([[0.0, 0, 30], [100, 0, 30], [100, 0.1, 30], [200, 0, 30]])
-    assert len(_without_hairs(line, rules)) == 3
+    assert len(_merge_short_legs(line, rules)) == 3
     low = np.array([[0.0, 0, 30], [100, 0, 20], [100, 0.1, 20], [200, 0, 30], [300, 0, 30]])
-    assert _without_hairs(low, rules).tolist() == np.delete(low, 1, axis=0).tolist()
+    assert _merge_short_legs(low, rules).tolist() == np.delete(low, 1, axis=0).tolist()
     ends = np.array([[0.0, 0, 30], [0, 0.1, 30], [200, 0, 30]])
-    assert (_without_hairs(ends, rules) == ends).all()  # take-off and landing stay where they are
+    assert (_merge_short_legs(ends, rules) == ends).all()  # take-off and landing stay where they are

@@ -166,10 +166,10 @@ def test_members_that_break_the_limit_count_as_ones_that_cannot_fly():
     asked = replace(divided(0.5), limits=Limits(wind=6.5))
     plan = gw.plan_route(asked)
     assert plan.spread.unflyable in (0, 3)  # they are closed in the corridor only
-    assert plan.strongest.keeping(asked.limits) == 10 - plan.spread.unflyable
+    assert plan.strongest.within_limits(asked.limits) == 10 - plan.spread.unflyable
     assert met(plan, asked.members[:1]) <= 6.5
     robust = gw.plan_route(replace(asked, robust=0.9))
-    assert robust.strongest.keeping(asked.limits) >= 9
+    assert robust.strongest.within_limits(asked.limits) >= 9
     with pytest.raises(RequestError, match=r"limits\.wind"):
         gw.plan_route(replace(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
 
@@ -184,7 +184,7 @@ def test_gusts_are_limited_where_the_forecast_tells_them():
         gw.plan_route(replace(asked, gusts=()))
     (problem,) = caught.value.problems
     assert problem.field == "limits.gust"
-    assert problem.message.startswith("no gusts are told by the wind (corridor): leave the limit out")
+    assert problem.message.startswith("the forecast has no gusts (corridor): leave the limit out")
     with pytest.raises(RequestError, match=r"the gusts there are 9\.00 m/s or more, too much for limits\.gust, 6 m/s"):
         gw.plan_route(replace(asked, goal=Site("goal", 900.0, 600.0)))
 
@@ -222,5 +222,5 @@ def test_gusts_of_a_file(gallery, tmp_path):
     (line,) = [line for line in summary_lines(plan) if line.startswith("strongest")]
     assert re.search(r"in any of the 10 members: wind \d\.\d m/s \(limits\.wind 9 m/s\), gust \d+\.\d m/s", line)
     assert line.endswith("10 of 10 keep the limits")
-    with pytest.raises(RequestError, match=r"jacksboro\.yaml:\d+:\d+: limits\.gust: no gusts are told by the wind"):
+    with pytest.raises(RequestError, match=r"jacksboro\.yaml:\d+:\d+: limits\.gust: the forecast has no gusts"):
         gw.plan_route(written("jacksboro", "{max_height: 120 m, gust: 10 m/s}"))

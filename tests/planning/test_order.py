@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import gcs_windplan as gw
 from gcs_windplan.errors import NoRouteError, RequestError
-from gcs_windplan.planning.order import Costs, best_order, put_in_order
-from gcs_windplan.planning.planner import prepare
+from gcs_windplan.planning.order import Costs, best_order, optimise_order
+from gcs_windplan.planning.planner import pose_problem
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
 from gcs_windplan.planning.route import find_route, unshaped
 from gcs_windplan.scene import Airspace, Prism
@@ -42,16 +42,16 @@ def scattered(seed: int, count: int) -> tuple[Site, ...]:
 
 def graph_cost(asked, order, choice=TIME) -> float:
     """What the graph's route costs with the vias in an order."""
-    ready = prepare(replace(asked, via=tuple(asked.via[i] for i in order), order="given"))
+    problem = pose_problem(replace(asked, via=tuple(asked.via[i] for i in order), order="given"))
     try:
-        return find_route(ready, choice, 0.0, unshaped).cost
+        return find_route(problem, choice, 0.0, unshaped).cost
     except NoRouteError:
         return np.inf
 
 
 def chosen(asked, choice=TIME) -> list[int]:
     """The numbers of the vias, from 0, in the order that is found."""
-    ordered = put_in_order(prepare(asked), choice)[0]
+    ordered = optimise_order(pose_problem(asked), choice)[0]
     return [asked.via.index(via) for via in ordered.request.via]
 
 

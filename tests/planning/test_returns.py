@@ -76,10 +76,10 @@ def test_the_point_of_no_return_by_hand(airframe):
     fixed = drawn[0] + landing(airframe, 40.0)
     allowed = fixed + 1000.0 * (out + back)
     tight = with_battery(replace(asked, limits=Limits(way_home=False)), allowed)
-    found = gw.plan_route(tight).ways_home.no_return
+    found = gw.plan_route(tight).ways_home.point_of_no_return
     assert found.distance == pytest.approx(1000.0, rel=0.01)
     assert found.seconds == pytest.approx(found.distance / 15.0, rel=1e-3)
-    assert gw.plan_route(with_battery(asked, fixed + 1900.0 * (out + back))).ways_home.no_return is None
+    assert gw.plan_route(with_battery(asked, fixed + 1900.0 * (out + back))).ways_home.point_of_no_return is None
 
 
 def test_home_lies_beyond_a_ridge(airframe):
@@ -95,8 +95,8 @@ def test_the_nearest_rally_point_counts_where_home_is_far(airframe):
     rally = Site("rally.0", 850.0, 100.0, above_ground=40.0)
     asked = request(wind=Everywhere(6.0), airframe=airframe, rally=(rally,), limits=Limits(way_home=True))
     plan = gw.plan_route(asked)
-    assert plan.ways_home.diversions[-1] < 0.4 * plan.ways_home.energies[-1]
-    needed = plan.battery.total + plan.ways_home.diversions[-1]
+    assert plan.ways_home.alternates[-1] < 0.4 * plan.ways_home.energies[-1]
+    needed = plan.battery.total + plan.ways_home.alternates[-1]
     gw.plan_route(with_battery(asked, needed))
     with pytest.raises(BatteryError, match="neither home nor a rally point can be reached with the reserve"):
         gw.plan_route(with_battery(replace(asked, rally=()), needed))
@@ -121,7 +121,7 @@ def test_wind_that_closes_the_way_back_is_no_way_home(airframe):
         gw.plan_route(asked)
     plan = gw.plan_route(replace(asked, limits=Limits()))
     assert plan.ways_home.energies[-1] == float("inf")
-    assert plan.ways_home.no_return.leg == 1
+    assert plan.ways_home.point_of_no_return.leg == 1
 
 
 def test_the_shortest_mission_cannot_return_and_the_thriftiest_does(gallery):

@@ -99,7 +99,7 @@ def read_mission(path: Path | str, departure: datetime | None = None, lasting: f
         robust=0.5 if model.robust is None else model.robust,
         airframe=airframe,
         free_airspeed=model.vehicle.airspeed == FREE,
-        locate=_locator(document),
+        locate=partial(_located, document),
     )
 
 
@@ -133,15 +133,11 @@ def _limits(model: LimitsModel) -> Limits:
     return Limits(model.wind, model.gust, model.battery, model.reserve, model.way_home)
 
 
-def _locator(document: MissionDocument) -> Callable[[Problem], Problem]:
-    """What puts file, line and column to a problem that names a field."""
-
-    def locate(problem: Problem) -> Problem:
-        if problem.file is not None or problem.field is None:
-            return problem
-        return document.problem(problem.field, problem.message)
-
-    return locate
+def _located(document: MissionDocument, problem: Problem) -> Problem:
+    """A problem that names a field, with its file, line and column."""
+    if problem.file is not None or problem.field is None:
+        return problem
+    return document.problem(problem.field, problem.message)
 
 
 def _placed(document: MissionDocument, field: str, build: Callable[[], _T]) -> _T:

@@ -60,7 +60,7 @@ def planes_of(setting: Setting, grid: PowerGrid, slope: float) -> FloatArray | N
     _, climbs, speeds = grid.watts.shape
     rates = grid.lowest_climb + grid.climb_step * np.arange(climbs)
     draught = setting.ball_up if slope > 0 else setting.ball_down
-    spare = (grid.watts - slope * rates[:, None]).min(axis=(0, 1)) + grid.worth - abs(slope) * draught
+    spare = (grid.watts - slope * rates[:, None]).min(axis=(0, 1)) + grid.cost_index - abs(slope) * draught
     if not (spare > 0).all():
         return None
     turns = np.arange(_DIRECTIONS) * (2 * math.pi / _DIRECTIONS)

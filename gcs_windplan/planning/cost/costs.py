@@ -17,7 +17,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray
+from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.flight.sampling import (
     LegIntegrals,
@@ -27,6 +27,7 @@ from gcs_windplan.flight.sampling import (
     sample_legs,
     still_air_times,
 )
+from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits
 from gcs_windplan.kernels import edges as kernel
 from gcs_windplan.kernels.power import PowerGrid, integrate_prices
 from gcs_windplan.kernels.triangle import Performance, mean_angles
@@ -79,8 +80,8 @@ class LegCost:
     the member at the `quantile` from the cheapest up; `wind` is then their mean. Along a leg
     the wind is looked at `finer` times as closely as its resolution asks for. With a `power` a leg costs its energy and
     what its time is worth [J], at the best of the airspeeds there; `energy` needs it, and `time` may have it: then
-    least time is weighed against energy. `corner` [s] is what slowing down at a waypoint takes the vehicle; legs do not
-    cost it, but shaping drops waypoints that are not worth it.
+    least time is weighed against energy. `waypoint_seconds` is what slowing down at a waypoint takes the
+    vehicle; legs do not cost it, but shaping drops waypoints that gain less. Beyond the `limits` of wind no leg flies.
     """
 
     choice: CostChoice
@@ -93,7 +94,8 @@ class LegCost:
     quantile: float = 0.5
     finer: float = 1.0
     power: PowerGrid | None = None
-    corner: float = 0.0
+    waypoint_seconds: float = 0.0
+    limits: WindLimits = NO_LIMITS
 
     def __post_init__(self) -> None:
         if self.choice.name == "energy" and self.power is None:
@@ -124,22 +126,29 @@ class LegCost:
         return len(self.wind.times) > 1
 
     @property
-    def toll(self) -> float:
+    def waypoint_penalty(self) -> float:
         """What a waypoint takes, in the cost's own unit; nothing where that is no matter of time."""
         if self.power is not None:
-            return self.corner * float(np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.worth)
-        return self.corner if self.choice.name == "time" else 0.0
+            return self.waypoint_seconds * float(
+                np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.cost_index
+            )
+        return self.waypoint_seconds if self.choice.name == "time" else 0.0
 
     def least_in(self, seconds: float) -> float:
         """What a way that lasts so long [s] costs at least."""
         if self.power is not None:
-            return seconds * (float(self.power.watts.min()) + self.power.worth)
+            return seconds * (float(self.power.watts.min()) + self.power.cost_index)
         return seconds if self.choice.name == "time" else 0.0
 
     @property
     def rank(self) -> int:
         """How many members undercut the one that counts."""
         return rank_of(self.quantile, len(self.members)) if self.members else 0
+
+    def too_many(self, closed: BoolArray) -> BoolArray:
+        """What (n,) is closed in more members (members, n) than may be left out."""
+        many: BoolArray = closed.sum(axis=0) > len(closed) - 1 - self.rank
+        return many
 
     def scratch(self) -> FloatArray | None:
         """What the kernels note down for each member; None where there are none."""
@@ -150,7 +159,7 @@ class LegCost:
         winds = self.members or (self.wind,)
         if self.power is not None:
             return self._priced_by_power(self.power, winds, starts, ends, when)
-        parts = integrate_each(winds, self.vehicle, starts, ends, when, self.finer)
+        parts = integrate_each(winds, self.vehicle, starts, ends, when, finer=self.finer, limits=self.limits)
         each = [self._price(part, starts, ends) for part in parts]
         if len(each) == 1:
             return each[0], parts[0].seconds
@@ -167,7 +176,7 @@ class LegCost:
         when: FloatArray | None,
     ) -> tuple[FloatArray, FloatArray]:
         """Price [J] and seconds of legs, (n,) each, at the airspeed that makes each cheapest."""
-        legs = sample_legs(winds, self.vehicle, starts, ends, when, self.finer)
+        legs = sample_legs(winds, self.vehicle, starts, ends, when, finer=self.finer, limits=self.limits)
         speeds = np.tile(power.airspeeds, (len(starts), 1))
         heights = np.ascontiguousarray(starts[:, 2])
         tables = [
@@ -202,10 +211,16 @@ class LegCost:
         """The same cost, but the wind along a leg is looked at so many times more closely."""
         return replace(self, finer=self.finer * times)
 
+    def with_spare(self, spare: float) -> LegCost:
+        """The same cost with another share of the limits of wind kept free."""
+        return replace(self, limits=self.limits.with_spare(spare)) if self.limits else self
+
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (..., 3), at all times, in all members."""
-        winds = winds.reshape(-1, 3)
+        winds = winds.reshape(-1, winds.shape[-1])
         centre, radius = enclosing_ball(winds)
+        if radius > self.limits.wind:  # of stronger wind nobody makes use
+            centre, radius = np.zeros(2), self.limits.wind
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
         return kernel.Setting(

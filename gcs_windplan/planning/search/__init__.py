@@ -2,6 +2,6 @@
 
 from gcs_windplan.planning.search.astar import GraphPath, find_path
 from gcs_windplan.planning.search.opening import find_open_path
-from gcs_windplan.planning.search.windy import WindyVeil, blow
+from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph, sample_wind
 
-__all__ = ["GraphPath", "WindyVeil", "blow", "find_open_path", "find_path"]
+__all__ = ["GraphPath", "NodeWinds", "WindGraph", "find_open_path", "find_path", "sample_wind"]

@@ -11,13 +11,12 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import search_csr, search_grid
-from gcs_windplan.kernels.edges import Setting, joins, remaining
+from gcs_windplan.kernels.edges import Setting, joins, remaining_at
 from gcs_windplan.planning.cost import LegCost
-from gcs_windplan.planning.search.windy import WindyVeil
+from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, breaches_around
 from gcs_windplan.scene import BREACHES
 from gcs_windplan.scene.clearance import AIRSPACE, OBSTACLE, OUTSIDE, TOO_HIGH, TOO_LOW, TOO_WINDY, UNKNOWN_GROUND
-from gcs_windplan.wind.limited import LimitedWind
 
 _JOIN = 2.0  # a site joins the grid's nodes within this many spacings
 _LONG = 3.0  # times the straight way in still air: for so long the wind is sampled at first
@@ -49,26 +48,26 @@ class GraphPath:
     deferred: int = 0
 
 
-def find_path(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0) -> GraphPath:
+def find_path(graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0) -> GraphPath:
     """The path from start to goal, (3,) each, that begins at `clock` [s since departure].
 
     Raises `NoRouteError` that says what cuts the goal off.
     """
     begin = time.perf_counter()
-    find = _search_grid if isinstance(windy.veil, GridVeil) else _search_prm
+    find = _search_grid if isinstance(graph.veil, GridVeil) else _search_prm
     horizon = _LONG * float(np.linalg.norm(goal - start)) / cost.vehicle.airspeed
     while True:
-        windy.cover(clock, clock + horizon)
-        found = find(windy, cost, start, goal, clock)
+        winds = graph.winds_between(clock, clock + horizon)
+        found = find(graph, winds, cost, start, goal, clock)
         complete = len(found.points) > 0 and found.cost <= cost.least_in(horizon)
-        reaches = windy.times is None or clock + horizon >= windy.ends
+        reaches = winds.times is None or clock + horizon >= graph.ends
         if complete or reaches or found.outlasted == 0:
             break
         horizon *= 3
     seconds = time.perf_counter() - begin
     if len(found.points) == 0:
         reached = np.flatnonzero(np.isfinite(found.reached))
-        raise no_route(windy, reached, start, goal, found.outlasted > 0, cost.rank)
+        raise no_route(graph, winds, reached, start, goal, cost, found.outlasted > 0)
     return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
@@ -84,16 +83,19 @@ class _Found:
     deferred: int
 
 
-def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float) -> _Found:
+def _search_grid(
+    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
+) -> _Found:
     """A* on the grid; the sites are joined to the nodes around them."""
-    veil = windy.veil
+    veil = graph.veil
     assert isinstance(veil, GridVeil)
     ends = np.stack([start, goal])
-    air = windy.at(ends)
+    blows, times = node_winds.winds, node_winds.times
+    air = graph.winds_at(ends, times)
     site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
-    setting = cost.setting(goal, np.concatenate([windy.winds, air], axis=-2))
-    world = windy.times, cost.rank, cost.scratch(), np.zeros(2, dtype=np.int64)
-    performance, estimates = cost.performance(), _estimates(cost, windy.points, start, goal, setting)
+    setting = cost.setting(goal, np.concatenate([blows, air], axis=-2))
+    world = times, cost.rank, cost.scratch(), np.zeros(2, dtype=np.int64)
+    performance, estimates = cost.performance(), _estimates(cost, graph.points, start, goal, setting)
 
     def leave(nodes: IntArray, winds: FloatArray, vectors: FloatArray) -> FloatArray:
         times, rank, each, tally = world
@@ -102,25 +104,22 @@ def _search_grid(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: Float
             float(start[2]), clock,
         )  # fmt: skip
 
-    near = _clear_nodes(windy, start)
-    costs = leave(near, windy.winds, windy.points[near] - start)
+    near = _clear_nodes(graph, start)
+    costs = leave(near, blows, graph.points[near] - start)
     flyable = np.isfinite(costs[:, 0])
     seeds, costs = near[flyable], costs[flyable]
-    if len(estimates):
-        ahead = estimates[seeds]
-    else:
-        ahead = np.array([remaining(performance, setting, *windy.points[seed]) for seed in seeds], dtype=np.float64)
+    ahead = estimates[seeds] if len(estimates) else remaining_at(performance, setting, graph.points[seeds])
     nodes, total, expanded, reached = search_grid(
         np.array(veil.heights.shape, dtype=np.int64), veil.corner, veil.spacing, veil.steps,
-        veil.heights.ravel(), veil.legal, windy.winds, estimates, performance, setting, cost.power,
-        seeds, costs[:, 0], costs[:, 0] + ahead, clock + costs[:, 1], _clear_nodes(windy, goal), goal_winds, *world,
+        veil.heights.ravel(), veil.legal, blows, estimates, performance, setting, cost.power,
+        seeds, costs[:, 0], costs[:, 0] + ahead, clock + costs[:, 1], _clear_nodes(graph, goal), goal_winds, *world,
     )  # fmt: skip
     direct = math.inf
     if np.linalg.norm(goal - start) <= _JOIN * veil.spacing and not veil.clearance.breaches(ends[:1], ends[1:])[0]:
         direct = float(leave(np.zeros(1, dtype=np.int64), goal_winds, (goal - start)[None])[0, 0])
     points = ends if direct <= total and math.isfinite(direct) else np.empty((0, 3))
     if len(nodes) and not len(points):
-        points = np.concatenate([start[None], windy.points[nodes], goal[None]])
+        points = np.concatenate([start[None], graph.points[nodes], goal[None]])
         points = points[np.append(True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 0)]
     outlasted, deferred = (int(count) for count in world[3])
     return _Found(points, min(direct, total), expanded, reached, outlasted, deferred)
@@ -132,36 +131,44 @@ def _estimates(cost: LegCost, points: FloatArray, start: FloatArray, goal: Float
     return np.where(np.isnan(estimates), 0.0, estimates)
 
 
-def _clear_nodes(windy: WindyVeil, site: FloatArray) -> IntArray:
+def _clear_nodes(graph: WindGraph, site: FloatArray) -> IntArray:
     """The nodes around a site with a clear leg between the two."""
-    veil = windy.veil
+    veil = graph.veil
     assert isinstance(veil, GridVeil)
-    nodes = veil.near(site, _JOIN * veil.spacing)
+    nodes = np.setdiff1d(veil.near(site, _JOIN * veil.spacing), graph.closed)
     sites = np.broadcast_to(site, (len(nodes), 3))
-    clear: IntArray = nodes[veil.clearance.breaches(sites, windy.points[nodes]) == 0]
+    clear: IntArray = nodes[veil.clearance.breaches(sites, graph.points[nodes]) == 0]
     return clear
 
 
-def _search_prm(windy: WindyVeil, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float) -> _Found:
+def _search_prm(
+    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
+) -> _Found:
     """A* on the roadmap, in which the sites are nodes."""
-    veil = windy.veil
+    veil = graph.veil
     assert isinstance(veil, PrmVeil)
     ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
     tally = np.zeros(2, dtype=np.int64)
-    setting = cost.setting(goal, windy.winds)
+    setting = cost.setting(goal, node_winds.winds)
     nodes, total, expanded, reached = search_csr(
-        veil.first, veil.neighbours, veil.points, windy.winds, _estimates(cost, veil.points, start, goal, setting),
+        veil.first, veil.neighbours, veil.points, node_winds.winds, _estimates(cost, veil.points, start, goal, setting),
         cost.performance(), setting, cost.power, ends[0], ends[1],
-        windy.times, clock, cost.rank, cost.scratch(), tally,
+        node_winds.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
     return _Found(veil.points[nodes], total, expanded, reached, int(tally[0]), int(tally[1]))
 
 
 def no_route(
-    windy: WindyVeil, reached: IntArray, start: FloatArray, goal: FloatArray, outlasted: bool = False, rank: int = 0
+    graph: WindGraph,
+    winds: NodeWinds,
+    reached: IntArray,
+    start: FloatArray,
+    goal: FloatArray,
+    cost: LegCost,
+    outlasted: bool,
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
-    veil = windy.veil
+    veil = graph.veil
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)
     elif len(reached) == 0:
@@ -175,12 +182,12 @@ def no_route(
             flags = veil.clearance.breaches(veil.points_of(around), np.broadcast_to(goal, (len(around), 3)))
             led = np.full(len(around), -1)
     inner = np.isin(led, reached)
-    flags = np.where((flags == 0) & _too_windy(windy, led, goal, rank), TOO_WINDY, flags).astype(np.uint8)
+    flags = np.where((flags == 0) & _too_windy(graph, winds, led, goal, cost), TOO_WINDY, flags).astype(np.uint8)
     cuts = _count(flags[~inner] if not inner.all() else flags)
     if not cuts:
         text = "no node lies near enough: use a finer graph, more nodes or a larger radius"
         return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
-    limit = f"wind limit ({windy.fields[0]})"
+    limit = f"wind limit ({graph.limits})"
     told = {limit if name == BREACHES[TOO_WINDY] else name: count for name, count in cuts.items()}
     listed = "; ".join(f"{name}: {count} legs" for name, count in told.items())
     advice = _ADVICE[next(iter(cuts))]
@@ -193,17 +200,14 @@ def no_route(
     )
 
 
-def _too_windy(windy: WindyVeil, nodes: IntArray, goal: FloatArray, rank: int) -> BoolArray:
+def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: LegCost) -> BoolArray:
     """Which nodes (-1: the goal) limits of wind close at some time, in more members than may be left out."""
-    closed = np.zeros((len(windy.fields), len(nodes)), dtype=np.bool_)
-    places = np.where(nodes[:, None] < 0, goal, windy.points[nodes])
-    known = np.isfinite(places).all(axis=1)
-    for member, wind in enumerate(windy.fields):
-        if isinstance(wind, LimitedWind):
-            for moment in np.zeros(1) if windy.times is None else windy.times:
-                closed[member, known] |= wind.closed(places[known], float(moment))
-    many: BoolArray = closed.sum(axis=0) > len(windy.fields) - 1 - rank
-    return many
+    if not graph.limits:
+        return np.zeros(len(nodes), dtype=np.bool_)
+    there = graph.winds_at(goal[None], winds.times)
+    shares = np.where(nodes < 0, there[..., 0:1, 3], winds.winds[..., np.maximum(nodes, 0), 3])
+    closed = (shares > 1.0).reshape(len(graph.fields), -1, len(nodes))
+    return cost.too_many(np.asarray(np.any(closed, axis=1)))
 
 
 def _prm_border(veil: PrmVeil, reached: IntArray) -> tuple[IntArray, FlagArray]:

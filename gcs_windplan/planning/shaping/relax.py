@@ -67,7 +67,7 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
         if not price <= given:
             break
         best = settled
-    if cost.toll > 0:
+    if cost.waypoint_penalty > 0:
         best = _without_idle(best, cost, clearance, given)
     return best if cost.of_polyline(best) <= given else points
 
@@ -75,7 +75,7 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
 def _without_idle(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float) -> FloatArray:
     """The polyline without the vertices that gain less than slowing down at them takes, those left settled again."""
     while True:
-        thinned = thin(points, cost, clearance, limit, cost.toll)
+        thinned = thin(points, cost, clearance, limit, cost.waypoint_penalty)
         if len(thinned) == len(points):
             return points
         settled, price = settle(thinned, cost, clearance, _TOUCH)
@@ -84,10 +84,10 @@ def _without_idle(points: FloatArray, cost: LegCost, clearance: Clearance, limit
         points = settled
 
 
-def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float, worth: float = np.inf) -> FloatArray:
+def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float, gain: float = np.inf) -> FloatArray:
     """Drop the vertices that matter least, one after the other, as long as the polyline costs at most `limit`.
 
-    A vertex that saves more than it is `worth` stays.
+    A vertex that saves more than `gain` stays.
     """
     legs, times = cost.priced(points)
     while len(points) > 2:
@@ -95,7 +95,7 @@ def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float, 
         skip[clearance.breaches(points[:-2], points[2:]) != 0] = np.inf
         extra = skip - legs[:-1] - legs[1:]
         least = int(np.argmin(extra))
-        if not (extra[least] <= worth and legs.sum() + extra[least] <= limit):
+        if not (extra[least] <= gain and legs.sum() + extra[least] <= limit):
             break
         points, times = np.delete(points, least + 1, axis=0), np.delete(times, least + 1)
         legs = np.concatenate([legs[:least], skip[least : least + 1], legs[least + 2 :]])

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.flight.wind_limits import SPARE
 from gcs_windplan.planning.cost import LegCost
 from gcs_windplan.planning.shaping.relax import relax, settle
 from gcs_windplan.planning.shaping.shorten import shorten
 from gcs_windplan.scene import Clearance
-from gcs_windplan.wind.limited import SPARE, with_spare
 
 _FREE: Final = ("time", "distance", "energy")  # costs under which vertices may leave the graph
 _CLOSER: Final = (1, 4, 16)  # times the wind's own sampling, one after the other, where that has missed something
@@ -30,7 +29,7 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
     """
     if cost.choice.name not in _FREE:
         return shorten(points, cost, clearance)
-    closest = with_spare_of_limits(cost, SPARE / 2).closer(_CLOSEST)  # what is found between samples goes there
+    closest = cost.with_spare(SPARE / 2).closer(_CLOSEST)  # what is found between samples goes there
     limit = closest.of_polyline(points) * (1 + _ROUNDING)
     for times in _CLOSER:
         closer = cost.closer(times)
@@ -39,12 +38,6 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
             if closest.of_polyline(shaped) <= limit:
                 return shaped
     return points
-
-
-def with_spare_of_limits(cost: LegCost, spare: float) -> LegCost:
-    """The cost in winds that are closed at another share below their limits, where they have any."""
-    members = tuple(with_spare(member, spare) for member in cost.members)
-    return replace(cost, wind=with_spare(cost.wind, spare), members=members)
 
 
 def shape_quickly(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:

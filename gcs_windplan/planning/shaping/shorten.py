@@ -14,21 +14,21 @@ from gcs_windplan.planning.cost import LegCost
 from gcs_windplan.scene import Clearance
 
 _MOST_LEGS = 8_000  # judged in one pass; the window narrows on long paths, and passes repeat
-_TOLL = 2e-4  # what a waypoint more must gain, as a share of the path's cost
+_PENALTY = 2e-4  # what a waypoint more must gain, as a share of the path's cost
 
 
 def shorten(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
     """The cheapest polyline through some of a path's vertices, shape (m, 3) with m at most the path's n.
 
-    Never worse than the path in the chosen cost: if the toll on waypoints would make it so, it is dropped.
+    Never worse than the path in the chosen cost: if the penalty on waypoints would make it so, it is dropped.
     """
     limit = cost.of_polyline(points)
     if len(points) < 3 or not np.isfinite(limit):
         return points
-    for toll in (_TOLL * limit, 0.0):
+    for penalty in (_PENALTY * limit, 0.0):
         shaped = points
         while True:
-            kept = _best_subset(shaped, cost, clearance, toll)
+            kept = _best_subset(shaped, cost, clearance, penalty)
             if len(kept) == len(shaped):
                 break
             shaped = shaped[kept]
@@ -37,7 +37,7 @@ def shorten(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArr
     return points
 
 
-def _best_subset(points: FloatArray, cost: LegCost, clearance: Clearance, toll: float) -> IntArray:
+def _best_subset(points: FloatArray, cost: LegCost, clearance: Clearance, penalty: float) -> IntArray:
     """The vertices of the cheapest polyline from first to last, each leg spanning at most a window of vertices."""
     n = len(points)
     window = max(2, min(n - 1, _MOST_LEGS // n))
@@ -50,7 +50,7 @@ def _best_subset(points: FloatArray, cost: LegCost, clearance: Clearance, toll: 
     if cost.changing:
         times = cost.priced(points)[1]
         when = np.column_stack([times[i], times[j]])
-    legs = cost.of_legs(points[i], points[j], when) + toll
+    legs = cost.of_legs(points[i], points[j], when) + penalty
     best = np.full(n, np.inf)
     best[0] = 0.0
     came_from = np.full(n, -1, dtype=np.int64)

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.planning.cost import CostChoice, LegCost, enclosing_ball
-from gcs_windplan.planning.search import blow, find_path
+from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Vehicle
@@ -64,11 +64,11 @@ def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
     veil = lay_grid(rules_over(dem, maximum=110.0), AREA, 150.0, (40.0, 70.0), neighbours)
     wind = WavyWind(seed, strength=6.0, rising=0.8)
     vehicle = Vehicle(9.0, speed_model=model)
-    windy = blow(veil, wind)
+    windy = sample_wind(veil, wind)
     points = windy.points
     start, goal = points[0], points[veil.size - 1]
     cost = LegCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
-    expected = _dijkstra(points, windy.winds, _grid_legs(veil), cost.choice, vehicle, 0, veil.size - 1)
+    expected = _dijkstra(points, windy.steady.winds, _grid_legs(veil), cost.choice, vehicle, 0, veil.size - 1)
     if math.isinf(expected):
         with pytest.raises(NoRouteError):
             find_path(windy, cost, start, goal)
@@ -77,7 +77,7 @@ def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
     # the sites may join nodes two spacings away, so the path may be better than the grid's own, never worse
     assert found.cost <= expected * (1 + EXACT)
     legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, 0), _site_legs(veil, goal, veil.size - 1)])
-    joined = _dijkstra(points, windy.winds, legs, cost.choice, vehicle, 0, veil.size - 1)
+    joined = _dijkstra(points, windy.steady.winds, legs, cost.choice, vehicle, 0, veil.size - 1)
     assert found.cost == pytest.approx(joined, rel=EXACT)
 
 
@@ -101,14 +101,16 @@ def test_time_equals_dijkstra_where_the_wind_is_not_known_everywhere(neighbours,
     dem = rough_dem(seed, relief=30.0)
     wind, vehicle = LowWind(seed, strength=6.0, rising=0.8), Vehicle(9.0, speed_model=model)
     veil = lay_grid(rules_over(dem), AREA, 180.0, (25.0, 45.0), neighbours)
-    windy = blow(veil, wind)
-    known = np.flatnonzero(np.isfinite(windy.winds[:, 0]))
+    windy = sample_wind(veil, wind)
+    known = np.flatnonzero(np.isfinite(windy.steady.winds[:, 0]))
     assert len(known) < veil.size
     first, last = int(known[0]), int(known[-1])
     start, goal = windy.points[first], windy.points[last]
     cost = LegCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
     legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, first), _site_legs(veil, goal, last)])
-    expected = _dijkstra(windy.points, np.nan_to_num(windy.winds, nan=99.0), legs, cost.choice, vehicle, first, last)
+    expected = _dijkstra(
+        windy.points, np.nan_to_num(windy.steady.winds, nan=99.0), legs, cost.choice, vehicle, first, last
+    )
     assert math.isfinite(expected)
     assert find_path(windy, cost, start, goal).cost == pytest.approx(expected, rel=EXACT)
 
@@ -132,10 +134,10 @@ def test_roadmap_equals_dijkstra(name, model, seed):
     veil = lay_prm(rules_over(dem), AREA, 250, seed, (50.0,), np.stack([start, goal]))
     wind = WavyWind(seed + 100, strength=7.0, rising=0.5)
     vehicle = Vehicle(10.0, speed_model=model)
-    windy = blow(veil, wind)
+    windy = sample_wind(veil, wind)
     cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 1.0)
     legs = np.concatenate([veil.pairs[veil.flags == 0], veil.pairs[veil.flags == 0][:, ::-1]])
-    expected = _dijkstra(veil.points, windy.winds, legs, cost.choice, vehicle, 0, 1)
+    expected = _dijkstra(veil.points, windy.steady.winds, legs, cost.choice, vehicle, 0, 1)
     if math.isinf(expected):
         with pytest.raises(NoRouteError):
             find_path(windy, cost, start, goal)
@@ -154,7 +156,7 @@ def test_the_papers_costs_are_what_their_path_adds_up_to(name, seed):
     start, goal = over_ground(dem, -800, -800, 50), over_ground(dem, 800, 700, 50)
     veil = lay_prm(rules_over(dem), AREA, 250, seed, (50.0,), np.stack([start, goal]))
     wind, vehicle = WavyWind(seed, strength=4.0), Vehicle(10.0)
-    windy = blow(veil, wind)
+    windy = sample_wind(veil, wind)
     cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0)
     found = find_path(windy, cost, start, goal)
     at = wind.at(found.points)
@@ -163,7 +165,7 @@ def test_the_papers_costs_are_what_their_path_adds_up_to(name, seed):
         for i in range(len(found.points) - 1)
     ]
     legs = np.concatenate([veil.pairs[veil.flags == 0], veil.pairs[veil.flags == 0][:, ::-1]])
-    best = _dijkstra(veil.points, windy.winds, legs, cost.choice, vehicle, 0, 1)
+    best = _dijkstra(veil.points, windy.steady.winds, legs, cost.choice, vehicle, 0, 1)
     assert found.cost == pytest.approx(sum(own), rel=EXACT)
     assert found.cost >= best * (1 - EXACT)
 
@@ -171,7 +173,7 @@ def test_the_papers_costs_are_what_their_path_adds_up_to(name, seed):
 def test_same_input_same_path():
     dem = rough_dem(3)
     veil = lay_grid(rules_over(dem), AREA, 60.0, (40.0, 80.0), 16)
-    windy = blow(veil, WavyWind(3))
+    windy = sample_wind(veil, WavyWind(3))
     cost = LegCost(CostChoice("time"), WavyWind(3), Vehicle(10.0), veil.edge_length, 1.0)
     start, goal = over_ground(dem, -733, -811, 40), over_ground(dem, 812, 777, 60)
     one, two = (find_path(windy, cost, start, goal) for _ in range(2))
@@ -207,5 +209,5 @@ def test_no_route_names_what_cuts(reason, dem, maximum, strength):
     wind = WavyWind(1, strength=strength)
     cost = LegCost(CostChoice("time"), wind, Vehicle(8.0), veil.edge_length, 1.0)
     with pytest.raises(NoRouteError, match=reason) as caught:
-        find_path(blow(veil, wind), cost, over_ground(dem, 0, -800, 60), over_ground(dem, 0, 800, 60))
+        find_path(sample_wind(veil, wind), cost, over_ground(dem, 0, -800, 60), over_ground(dem, 0, 800, 60))
     assert reason in next(iter(caught.value.cuts))

@@ -11,7 +11,7 @@ import pytest
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.planning.cost import CostChoice, LegCost, rank_of
-from gcs_windplan.planning.search import blow, find_path
+from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.vehicle import Vehicle
 from tests.oracles.changing import best_of_all_paths, best_with_waiting, edge_lasting, leg_by_ode
@@ -45,7 +45,7 @@ def test_on_small_roadmaps_it_equals_brute_force_over_all_paths(seed, begin, ris
     vehicle = Vehicle(10.0)
     expected = best_of_all_paths(veil.size, legs, edge_lasting(vehicle, points, wind), begin)
     cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0, begin)
-    found = find_path(blow(veil, wind), cost, start, goal, begin)
+    found = find_path(sample_wind(veil, wind), cost, start, goal, begin)
     assert found.cost == pytest.approx(expected, rel=1e-7)
 
 
@@ -56,7 +56,7 @@ def test_waiting_on_the_way_does_not_arrive_earlier(seed):
     wind = ShiftingWind((seed, seed + 50), (0.0, 600.0), strength=6.0)
     vehicle = Vehicle(10.0)
     cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0)
-    found = find_path(blow(veil, wind), cost, start, goal)
+    found = find_path(sample_wind(veil, wind), cost, start, goal)
     step = 0.5
     waited = best_with_waiting(veil.size, legs, edge_lasting(vehicle, points, wind), 0.0, step)
     assert found.cost <= waited + EXACT
@@ -69,7 +69,7 @@ def test_on_a_grid_it_beats_no_bound_and_equals_it(seed):
     dem = rough_dem(seed, relief=20.0)
     veil = lay_grid(rules_over(dem, maximum=110.0), AREA, 150.0, (40.0, 70.0), 16)
     wind = ShiftingWind((seed, seed + 7), (0.0, 500.0), strength=6.0)
-    windy, vehicle = blow(veil, wind), Vehicle(11.0)
+    windy, vehicle = sample_wind(veil, wind), Vehicle(11.0)
 
     class Unbounded(LegCost):
         __slots__ = ()
@@ -94,7 +94,7 @@ def test_a_wind_that_does_not_change_is_found_as_the_steady_one():
     costs = []
     for wind in (changing, steady):
         cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0)
-        windy = blow(veil, wind) if wind is changing else blow(veil, _Frozen(changing))
+        windy = sample_wind(veil, wind) if wind is changing else sample_wind(veil, _Frozen(changing))
         costs.append(find_path(windy, cost, start, goal).cost)
     assert costs[0] == pytest.approx(costs[1], rel=EXACT)
 
@@ -122,7 +122,7 @@ def test_every_cost_finds_a_way_that_can_be_flown(name):
     wind = ShiftingWind((5, 6), (0.0, 700.0), strength=5.0)
     start, goal = veil.points[0], veil.points[veil.size - 1]
     cost = LegCost(CostChoice(name), wind, Vehicle(12.0), veil.edge_length, 2000.0)
-    found = find_path(blow(veil, wind), cost, start, goal)
+    found = find_path(sample_wind(veil, wind), cost, start, goal)
     assert np.isfinite(fly_legs(found.points, wind, Vehicle(12.0))[1]).all()
 
 
@@ -146,7 +146,7 @@ def test_beyond_the_forecast_there_is_no_route_and_the_error_says_so():
     wind = ShiftingWind((1, 2), (0.0, 60.0))
     cost = LegCost(TIME, wind, Vehicle(12.0), veil.edge_length, 1.0)
     with pytest.raises(NoRouteError, match="longer than the forecast reaches"):
-        find_path(blow(veil, wind), cost, veil.points[0], veil.points[veil.size - 1])
+        find_path(sample_wind(veil, wind), cost, veil.points[0], veil.points[veil.size - 1])
 
 
 def test_more_of_the_forecast_is_sampled_only_where_the_flight_lasts_so_long():
@@ -154,10 +154,10 @@ def test_more_of_the_forecast_is_sampled_only_where_the_flight_lasts_so_long():
     dem = rough_dem(1, relief=5.0)
     veil = lay_grid(rules_over(dem, maximum=110.0), AREA, 150.0, (40.0,), 8)
     calm = ShiftingWind((1, 2, 3, 4, 5), (0.0, 300.0, 1500.0, 3000.0, 9000.0), strength=1.0)
-    windy = blow(veil, calm)
+    windy = sample_wind(veil, calm)
     start, goal = veil.points[0], veil.points[veil.size - 1]
     find_path(windy, LegCost(TIME, calm, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
-    assert list(windy.times) == [0.0, 300.0, 1500.0]
+    assert windy.sampled == (0.0, 300.0, 1500.0)
 
     @dataclass(frozen=True)
     class Headwind(ShiftingWind):
@@ -165,10 +165,10 @@ def test_more_of_the_forecast_is_sampled_only_where_the_flight_lasts_so_long():
             return super().at(points, seconds) + np.array([-7.7, -7.7, 0.0])
 
     against = Headwind(calm.seeds, calm.knots, strength=0.2)
-    windy = blow(veil, against)
+    windy = sample_wind(veil, against)
     found = find_path(windy, LegCost(TIME, against, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
     assert found.cost > 1000.0
-    assert len(windy.times) > 3
+    assert len(windy.sampled) > 3
 
 
 @pytest.mark.parametrize("quantile", [0.5, 0.8, 0.9])
@@ -185,7 +185,7 @@ def test_over_members_an_edge_costs_the_quantile(quantile):
     expected = best_of_all_paths(veil.size, legs, lasting, 0.0)
     assert math.isfinite(expected)
     cost = LegCost(TIME, members[0], vehicle, veil.edge_length, 1.0, 0.0, members, quantile)
-    found = find_path(blow(veil, members[0], members), cost, start, goal)
+    found = find_path(sample_wind(veil, members[0], members), cost, start, goal)
     assert found.cost == pytest.approx(expected, rel=1e-7)
 
 

@@ -18,7 +18,7 @@ from gcs_windplan.kernels.edges import edge_between
 from gcs_windplan.kernels.power import watts_at
 from gcs_windplan.planning.cost import CostChoice, LegCost
 from gcs_windplan.planning.cost.bounds import least_prices
-from gcs_windplan.planning.search import blow, find_path
+from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.vehicle import FixedWing, Multirotor, RotaryWing, Vehicle, air_density
 from gcs_windplan.vehicle.power_grid import tabulate
@@ -41,7 +41,14 @@ def pair_energies(cost: LegCost, points, winds, pairs):
     return np.array(
         [
             naive_edge_price(
-                cost.vehicle, cost.power.airspeeds, points[i], points[j], winds[i], winds[j], watts, cost.power.worth
+                cost.vehicle,
+                cost.power.airspeeds,
+                points[i],
+                points[j],
+                winds[i],
+                winds[j],
+                watts,
+                cost.power.cost_index,
             )
             for i, j in pairs
         ]
@@ -54,8 +61,8 @@ def dijkstra_cost(costs, pairs, size: int, start: int, goal: int) -> float:
     return float(dijkstra(graph.tocsr(), indices=start)[goal])
 
 
-def energy_cost(wind, vehicle, power, airspeeds, edge: float, worth: float = 0.0) -> LegCost:
-    grid = tabulate(power, vehicle, np.array(airspeeds), (0.0, 200.0), worth)
+def energy_cost(wind, vehicle, power, airspeeds, edge: float, cost_index: float = 0.0) -> LegCost:
+    grid = tabulate(power, vehicle, np.array(airspeeds), (0.0, 200.0), cost_index)
     return LegCost(CostChoice("energy"), wind, vehicle, edge, 1.0, power=grid)
 
 
@@ -66,12 +73,12 @@ def test_energy_on_a_roadmap_equals_dijkstra(seed, model, airspeeds):
     veil = lay_prm(rules_over(rough_dem(seed)), AREA, 100, seed, (40.0, 70.0), _sites(seed), 620.0)
     wind = WavyWind(seed, strength=6.0, rising=0.8)
     vehicle = Vehicle(9.0, climb=3.0, descent=2.0)
-    windy = blow(veil, wind)
-    cost = energy_cost(wind, vehicle, MODELS[model], airspeeds, veil.edge_length, worth=50.0 * (seed % 2))
+    windy = sample_wind(veil, wind)
+    cost = energy_cost(wind, vehicle, MODELS[model], airspeeds, veil.edge_length, cost_index=50.0 * (seed % 2))
     start, goal = _sites(seed)
     ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
     pairs = np.array([(i, j) for i in range(veil.size) for j in veil.neighbours[veil.first[i] : veil.first[i + 1]]])
-    expected = dijkstra_cost(pair_energies(cost, veil.points, windy.winds, pairs), pairs, veil.size, *ends)
+    expected = dijkstra_cost(pair_energies(cost, veil.points, windy.steady.winds, pairs), pairs, veil.size, *ends)
     assert math.isfinite(expected)
     found = find_path(windy, cost, start, goal)
     assert found.cost == pytest.approx(expected, rel=rounding)
@@ -82,7 +89,7 @@ def test_energy_on_a_grid_is_what_its_edges_add_up_to_and_no_bound_changes_it(se
     veil = lay_grid(rules_over(rough_dem(seed), maximum=110.0), AREA, 120.0, (40.0, 70.0), 16)
     wind = WavyWind(seed, strength=7.0, rising=0.5)
     vehicle = Vehicle(10.0)
-    windy = blow(veil, wind)
+    windy = sample_wind(veil, wind)
     cost = energy_cost(wind, vehicle, QUADCOPTER, (6.0, 10.0, 14.0), veil.edge_length)
     start, goal = windy.points[0], windy.points[veil.size - 1]
     found = find_path(windy, cost, start, goal)
@@ -106,15 +113,15 @@ def _sites(seed: int):
     seed=st.integers(0, 10_000),
     strength=st.floats(0, 12),
     model=st.sampled_from([*MODELS.values(), WING]),
-    worth=st.floats(0, 500),
+    cost_index=st.floats(0, 500),
     climb=st.floats(1.5, 6),
     descent=st.floats(1.5, 6),
 )
-def test_no_edge_is_cheaper_than_what_it_takes_off_the_bound(seed, strength, model, worth, climb, descent):
+def test_no_edge_is_cheaper_than_what_it_takes_off_the_bound(seed, strength, model, cost_index, climb, descent):
     points, winds = scatter(seed, count=12, strength=strength)
     kind = "fixed-wing" if model is WING else "multicopter"
     vehicle = Vehicle(16.0, climb, descent, type=kind)
-    cost = energy_cost(Calm(), vehicle, model, (9.0, 16.0, 22.0), 1.0, worth)
+    cost = energy_cost(Calm(), vehicle, model, (9.0, 16.0, 22.0), 1.0, cost_index)
     setting = cost.setting(points[-1], winds)
     ahead = least_prices(points, setting, cost.power, points[0])
     assert ahead[-1] == 0.0
@@ -175,6 +182,6 @@ def test_wind_too_strong_for_every_airspeed_is_no_route():
     veil = lay_grid(rules_over(rough_dem(1)), AREA, 200.0, (50.0,), 8)
     wind = replace(WavyWind(1), strength=120.0)
     cost = energy_cost(wind, Vehicle(8.0), QUADCOPTER, (8.0, 12.0), veil.edge_length)
-    windy = blow(veil, wind)
+    windy = sample_wind(veil, wind)
     with pytest.raises(NoRouteError):
         find_path(windy, cost, windy.points[0], windy.points[veil.size - 1])

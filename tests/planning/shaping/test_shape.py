@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs_windplan.planning.cost import COST_NAMES, CostChoice, LegCost
-from gcs_windplan.planning.search import blow, find_path
+from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.shaping import relax, shape, shorten, thin
 from gcs_windplan.planning.veil import lay_grid
 from gcs_windplan.scene import Clearance
@@ -36,7 +36,9 @@ def test_never_worse_than_the_graph_and_always_clear(seed, name, strength):
     vehicle = Vehicle(12.0)
     power = tabulate(QUADCOPTER, vehicle, np.array([8.0, 12.0, 16.0]), (0.0, 300.0)) if name == "energy" else None
     cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0, power=power)
-    path = find_path(blow(veil, wind), cost, over_ground(dem, -800, -700, 40), over_ground(dem, 750, 800, 60)).points
+    path = find_path(
+        sample_wind(veil, wind), cost, over_ground(dem, -800, -700, 40), over_ground(dem, 750, 800, 60)
+    ).points
     limit = cost.of_polyline(path)
     for shaped in (shorten(path, cost, rules), shape(path, cost, rules)):
         assert cost.of_polyline(shaped) <= limit * (1 + 1e-12)
@@ -93,7 +95,7 @@ def test_shaping_gains_nothing_from_what_lies_between_two_samples():
     vehicle = Vehicle(2.0, 9.0, 9.0)
     veil = lay_grid(rules, Extent(-2, -2, 2, 2), 0.04, (10.0,), 16)
     cost = LegCost(CostChoice("time"), Disc(), vehicle, veil.edge_length, 5.0)
-    path = find_path(blow(veil, Disc()), cost, start, goal).points
+    path = find_path(sample_wind(veil, Disc()), cost, start, goal).points
     shaped = shape(path, cost, rules)
     assert _true_seconds(shaped, vehicle) <= _true_seconds(path, vehicle) * 1.001
 
