@@ -11,8 +11,8 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cores import available_cores, spread
 from gcs_windplan.errors import WindError
+from gcs_windplan.geo.inverse import to_grid_north
 from gcs_windplan.kernels.interpolation import Columns, Law, interpolate_columns
-from gcs_windplan.wind.chart import to_grid
 from gcs_windplan.wind.field import STEADY, Ground
 from gcs_windplan.wind.placement import Placement, advice, may_extend
 
@@ -71,7 +71,20 @@ class GriddedWind:
         places = self.placed(points)
         z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
         ground = ground_under(self.ground, points)
-        return to_grid(self.interpolated(places, z, ground, when), places[:, 2])
+        return to_grid_north(self.interpolated(places, z, ground, when), places[:, 2])
+
+    @classmethod
+    def at_members(cls, members: Sequence[GriddedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+        """The winds (n, 3 m) of members as their `at`, one after the other; places and ground are looked up once."""
+        one = members[0]
+        if not all(member.shares_with(one) for member in members):
+            return np.concatenate([member.at(points, seconds) for member in members], axis=1)
+        when = one._when(seconds, len(points))
+        places = one.placed(points)
+        z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
+        ground = ground_under(one.ground, points)
+        turned = [to_grid_north(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
+        return np.concatenate(turned, axis=1)
 
     def shares_with(self, other: GriddedWind) -> bool:
         """Whether places, ground and clock are the other's: two members of one ensemble."""
@@ -125,17 +138,6 @@ class GriddedWind:
             f"the wind ends {missing[worst] / 1000:.1f} km short of {latitude[0]:.5f}, {longitude[0]:.5f}:"
             f" {self.placement.covers()} ({self.name}); {advice(self.placement, float(missing[worst]))}"
         )
-
-
-def at_members(members: Sequence[GriddedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
-    """The winds (n, 3 m) of members that share places, ground and clock; as their `at` one after the other."""
-    one = members[0]
-    when = one._when(seconds, len(points))
-    places = one.placed(points)
-    z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
-    ground = ground_under(one.ground, points)
-    turned = [to_grid(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
-    return np.concatenate(turned, axis=1)
 
 
 def mean_of(members: Sequence[GriddedWind]) -> GriddedWind:

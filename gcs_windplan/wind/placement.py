@@ -15,8 +15,9 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.geo.fit import PolynomialFit
+from gcs_windplan.geo.inverse import InverseProjection
 from gcs_windplan.geodesy import LocalFrame
-from gcs_windplan.wind.chart import Chart, monomials
 from gcs_windplan.wind.sheets import Grid
 
 #: west, south, east, north in the local frame [m]
@@ -29,7 +30,7 @@ _LATTICE = 17  # points a side of the area whose latitudes and longitudes have t
 _WHOLE = 300_000.0  # [m] about the origin that is kept of a projected grid where no area is told
 _FEWEST = 6  # rows and columns kept of a projected grid, so that the polynomial has enough to hold on to
 _LARGEST_ERROR = 1e-3  # of a cell
-_DEGREES = {5: (21, 60), 3: (10, 20), 1: (3, 0)}  # of the polynomial: its terms, and how many nodes it wants
+_DEGREES = {5: 60, 3: 20, 1: 0}  # of the polynomial, and the fewest nodes that it takes
 
 
 class Placement(Protocol):
@@ -68,10 +69,10 @@ class LatLonPlacement:
     frame: LocalFrame
     rows: FloatArray
     columns: FloatArray
-    _chart: Chart = field(init=False, repr=False, compare=False)
+    _inverse: InverseProjection = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_chart", Chart(self.frame))
+        object.__setattr__(self, "_inverse", InverseProjection(self.frame))
 
     @property
     def spacing(self) -> float:
@@ -83,7 +84,7 @@ class LatLonPlacement:
 
     def at(self, points: FloatArray) -> FloatArray:
         """Latitude, longitude [deg] and convergence [rad] of local points (n, 2 or more), shape (n, 3)."""
-        return self._chart.at(points)
+        return self._inverse.at(points)
 
     def misses(self, places: FloatArray) -> FloatArray:
         """How far places lie outside of the grid [m], shape (n,)."""
@@ -113,25 +114,21 @@ class MappedPlacement:
     frame: LocalFrame
     nodes: FloatArray
     name: str
-    _chart: Chart = field(init=False, repr=False, compare=False)
-    _middle: FloatArray = field(init=False, repr=False, compare=False)
-    _reach: float = field(init=False, repr=False, compare=False)
-    _coefficients: FloatArray = field(init=False, repr=False, compare=False)
+    _inverse: InverseProjection = field(init=False, repr=False, compare=False)
+    _fit: PolynomialFit = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         places = self.nodes.reshape(-1, 2)
         middle = (places.min(axis=0) + places.max(axis=0)) / 2
         reach = float(np.abs(places - middle).max()) or 1.0
         numbers = np.indices(self.nodes.shape[:2]).reshape(2, -1).T.astype(np.float64)
-        degree = next(degree for degree, (_, few) in _DEGREES.items() if len(places) >= few)
-        powers = monomials((places - middle) / reach, degree)
-        fitted, *_ = np.linalg.lstsq(powers, numbers, rcond=None)
-        error = float(np.abs(powers @ fitted - numbers).max())
+        degree = next(degree for degree, fewest in _DEGREES.items() if len(places) >= fewest)
+        fit = PolynomialFit.least_squares(middle, np.full(2, reach), degree, places, numbers)
+        error = float(np.abs(fit.residual(places, numbers)).max())
         if not error < _LARGEST_ERROR:
             raise WindError(f"its grid ({self.name}) is too uneven: a fit is off by {error:.2g} cells; regrid it")
-        for name, value in (("_chart", Chart(self.frame)), ("_middle", middle), ("_reach", reach)):
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_coefficients", fitted)
+        object.__setattr__(self, "_inverse", InverseProjection(self.frame))
+        object.__setattr__(self, "_fit", fit)
 
     @property
     def rows(self) -> FloatArray:
@@ -151,9 +148,8 @@ class MappedPlacement:
 
     def at(self, points: FloatArray) -> FloatArray:
         """Row and column (numbers) and convergence [rad] of local points (n, 2 or more), shape (n, 3)."""
-        result = self._chart.at(points)
-        degree = next(degree for degree, (terms, _) in _DEGREES.items() if terms == len(self._coefficients))
-        result[:, :2] = monomials((points[:, :2] - self._middle) / self._reach, degree) @ self._coefficients
+        result = self._inverse.at(points)
+        result[:, :2] = self._fit.at(points)
         return result
 
     def misses(self, places: FloatArray) -> FloatArray:

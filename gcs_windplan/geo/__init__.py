@@ -1,0 +1,1 @@
+"""The globe as planning sees it: projections that are fitted by polynomials."""
