@@ -16,7 +16,7 @@ import pytest
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
-from gcs_windplan.wind import GriddedWind, Ground, Wanted, read_forecast
+from gcs_windplan.wind import ForecastQuery, GriddedWind, Ground, read_forecast
 from tests.wind.trap_file import FROM_WEST, write_trap
 
 ONE_CM_PER_SECOND = 0.01
@@ -39,7 +39,7 @@ def read(
     path: Path, frame: LocalFrame, ground: Ground | None = None, departure: datetime | None = None, **options: Any
 ) -> GriddedWind:
     """The wind of one file, the mean where there are members."""
-    return read_forecast([path], Wanted(frame, ground, departure, **options)).mean
+    return read_forecast([path], ForecastQuery(frame, ground, departure, **options)).mean
 
 
 def _flat(points: FloatArray) -> FloatArray:

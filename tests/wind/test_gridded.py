@@ -45,7 +45,7 @@ def _wind(columns: Columns | None = None, **changes: object) -> GriddedWind:
         placement=LatLonPlacement(FRAME, columns.rows, columns.columns),
         columns=columns,
         law=Law(LOG, 0.0, 0.0),
-        zero=EPOCH,
+        departure=EPOCH,
         window=(float(columns.times[0]), float(columns.times[-1])),
     )
     return replace(wind, **changes)  # type: ignore[arg-type]
@@ -73,7 +73,7 @@ def test_each_point_may_have_its_own_time() -> None:
 
 
 def test_times_count_from_the_departure() -> None:
-    later = replace(_wind(), zero=EPOCH + 1800.0)
+    later = replace(_wind(), departure=EPOCH + 1800.0)
     np.testing.assert_allclose(later.times, [-1800, 5400])
     np.testing.assert_allclose(_at(later, 0, 0, 150, 1800.0), [10.5, 0, 0], atol=ONE_CM_PER_SECOND)
 

@@ -71,7 +71,7 @@ def _by_units(variable: Variable) -> Role | None:
         return "run" if runs or variable.text("_CoordinateAxisType") == "runtime" else "time"
     if "hybrid" in said or "model level" in said:
         return "model"
-    if compact(units) in PRESSURE.sizes:
+    if compact(units) in PRESSURE.factors:
         return "pressure"
     return None
 

@@ -11,9 +11,9 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from gcs_windplan.wind.field_index import SURFACE, Level, Quantity
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.units import is_something_else
-from gcs_windplan.wind.sheets import SURFACE, Level, Quantity
 
 WIND: tuple[Quantity, ...] = ("u", "v", "speed", "direction")
 
@@ -94,7 +94,7 @@ def meaning(variable: Variable) -> Meaning | None:
     """What a variable holds, None if it is none of our quantities or only tells how sure one is."""
     base, level, guess = _parted(variable)
     quantity = _quantity(variable, base, level)
-    if quantity is None or _is_odd(variable, quantity) or is_something_else(variable.told("units"), quantity):
+    if quantity is None or _is_odd(variable, quantity) or is_something_else(variable.raw_text("units"), quantity):
         return None
     said = f"{variable.text('long_name')} {variable.name.lower()} {variable.text('standard_name')}"
     said = re.sub("[_-]", " ", said)
@@ -167,7 +167,7 @@ def _parted(variable: Variable) -> tuple[str, Level | None, Level | None]:
         match = re.fullmatch(pattern, name)
         if match:
             return match["base"], _stated(variable), _bare(variable, match["base"], float(match["number"]))
-    return name, _stated(variable), _said(variable, name)
+    return name, _stated(variable), _unused_note(variable, name)
 
 
 def _bare(variable: Variable, base: str, number: float) -> Level:
@@ -192,7 +192,7 @@ def _stated(variable: Variable) -> Level | None:
     return Level("height" if match[2] == "m above ground" else "altitude", number)
 
 
-def _said(variable: Variable, base: str) -> Level | None:
+def _unused_note(variable: Variable, base: str) -> Level | None:
     """What a long name tells of heights or pressures: `10 metre U wind component`, `U at 10 M`, `at 850 mb`."""
     text = variable.text("long_name") or variable.text("description")  # WRF's word for it
     match = re.search(r"(?<![\d.])(\d+)[ -]?(m|met(?:er|re)s?|hpa|mb|mbar|millibars?)\b(?! ?(s|/))", text)

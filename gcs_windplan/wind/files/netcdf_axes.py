@@ -8,14 +8,14 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import SURFACE, Level, LevelKind
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_axes import LEVELS, Role, role
 from gcs_windplan.wind.files.cf_names import Meaning
 from gcs_windplan.wind.files.cf_time import Coordinate, moments, spans, written
 from gcs_windplan.wind.files.hybrid import Halves, model_levels
 from gcs_windplan.wind.files.netcdf_file import NetcdfFile
-from gcs_windplan.wind.files.units import LENGTH, PRESSURE, unit_of
-from gcs_windplan.wind.sheets import SURFACE, Level, LevelKind
+from gcs_windplan.wind.files.units import LENGTH, PRESSURE, unit_factor
 
 _STATIC = ("terrain", "roughness")
 _ON_THE_SURFACE = (*_STATIC, "pressure")
@@ -177,7 +177,7 @@ class Axes:
             )
 
     def _in_si(self, axis: Variable, kind: LevelKind) -> FloatArray:
-        unit = unit_of(axis.name, axis.told("units"), PRESSURE if kind == "pressure" else LENGTH)
+        unit = unit_factor(axis.name, axis.raw_text("units"), PRESSURE if kind == "pressure" else LENGTH)
         return self._complete(axis).ravel() * unit
 
     def _level(self, variable: Variable, meaning: Meaning) -> Level:
@@ -203,7 +203,7 @@ class Axes:
 
 
 def _named(variable: Variable) -> list[str]:
-    return variable.told("coordinates").split()
+    return variable.raw_text("coordinates").split()
 
 
 def _level_kind(found: Role | None) -> LevelKind:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs_windplan.wind.report.series import Gap, series_of
+from gcs_windplan.wind.inspect.time_series import TimeGap, series_of
 
 HOUR = 3600.0
 
@@ -39,8 +39,7 @@ def test_steps_and_gaps(
     found = series_of(_hours(*hours))
     assert found.times == tuple(_hours(*hours))
     assert found.steps == tuple((step * HOUR, end * HOUR) for step, end in steps)
-    assert found.gaps == tuple(Gap(first * HOUR, last * HOUR, count) for first, last, count in gaps)
-    assert found.uneven == (len(hours) > 1 and not steps)
+    assert found.gaps == tuple(TimeGap(first * HOUR, last * HOUR, count) for first, last, count in gaps)
 
 
 def test_single_precision_does_not_make_a_series_uneven() -> None:
@@ -51,5 +50,5 @@ def test_single_precision_does_not_make_a_series_uneven() -> None:
 def test_an_hour_that_is_taken_out_of_an_hourly_series_is_named(taken: tuple[int, int]) -> None:
     last, out = taken
     found = series_of(_hours(*(number for number in range(last + 1) if number != out)))
-    assert found.gaps == (Gap(out * HOUR, out * HOUR, 1),)
+    assert found.gaps == (TimeGap(out * HOUR, out * HOUR, 1),)
     assert found.steps == ((HOUR, last * HOUR),)

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.wind.report import inventory as module
-from gcs_windplan.wind.report.inventory import Inventory, open_files, take_inventory
-from gcs_windplan.wind.sheets import Level
+from gcs_windplan.wind.field_index import Level
+from gcs_windplan.wind.inspect import inventory as module
+from gcs_windplan.wind.inspect.inventory import Inventory, take_inventory
+from gcs_windplan.wind.reading import open_indexes
 from tests.wind.grib_files import message
 from tests.wind.netcdf_maker import AXES, HOURS, NOON, wind, write_netcdf
 from tests.wind.other_readers import NAMES, every_value, real
@@ -25,8 +26,8 @@ TEN_METRES = {"typeOfLevel": "heightAboveGround", "level": 10}
 
 
 def _inventory(*paths: Path) -> Inventory:
-    with open_files(paths) as files:
-        return take_inventory(files)
+    with open_indexes(paths) as indexes:
+        return take_inventory(paths, indexes)
 
 
 def _grib(path: Path, *messages: bytes) -> Path:
@@ -35,7 +36,7 @@ def _grib(path: Path, *messages: bytes) -> Path:
 
 
 def _levels(inventory: Inventory, quantity: str) -> list[str]:
-    return [str(level) for one in inventory.holdings if one.quantity == quantity for level in one.levels]
+    return [str(level) for one in inventory.quantities if one.quantity == quantity for level in one.levels]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -49,12 +50,12 @@ def test_times_levels_and_members_are_those_that_other_readers_find(name: str) -
     found = _inventory(path)
     assert set(found.times.times) == times
     assert set(found.members) == members - {None}
-    assert found.alone == (None in members)
+    assert found.also_without_member == (None in members)
     for quantity, there in levels.items():
         assert set(_levels(found, quantity)) == there, quantity
-    assert not any(one.missing for one in found.count.found)
-    assert found.count.read == found.count.sheets
-    assert not found.count.broken
+    assert not any(one.missing for one in found.missing.found)
+    assert found.missing.read == found.missing.fields
+    assert not found.missing.broken
 
 
 #: Of each file: format, title, runs, units of the first quantity, rows and columns, area, what planning says.
@@ -101,38 +102,34 @@ def test_format_title_units_area_and_planning_of_real_files(name: str) -> None:
     kind, title, runs, units, shape, area, planning = EXPECTED[name]
     (file,), (grid,) = found.files, found.grids
     assert (file.format, file.title, len(found.runs)) == (kind, title, runs)
-    assert found.holdings[0].units == units
+    assert found.quantities[0].units == units
     assert (grid.rows, grid.columns) == shape
-    extent = grid.extent
-    assert (extent.south, extent.north, extent.west, extent.east) == pytest.approx(area, abs=1e-3)
-    assert extent.round == (area[3] - area[2] > 300)
-    assert planning in found.trial.obstacle + found.trial.said
-    assert bool(found.trial.obstacle) == planning.startswith("it has")
+    assert (grid.south, grid.north, grid.west, grid.east) == pytest.approx(area, abs=1e-3)
+    assert grid.all_longitudes == (area[3] - area[2] > 300)
+    assert planning in found.planning.obstacle + found.planning.uses
+    assert bool(found.planning.obstacle) == planning.startswith("it has")
     assert not grid.turned
 
 
-def test_levels_of_u_without_v_are_lone() -> None:
+def test_levels_of_u_without_v_are_listed() -> None:
     found = _inventory(real("ecmwf_uv_on_different_levels.grib"))
-    assert [(one.quantity, [str(level) for level in one.levels]) for one in found.lone] == [
-        ("u", ["850 hPa", "400 hPa"])
-    ]
+    assert set(_levels(found, "u")) - set(_levels(found, "v")) == {"850 hPa", "400 hPa"}
 
 
 def test_u_without_v_is_listed_and_planning_says_why_it_stops(tmp_path: Path) -> None:
     found = _inventory(write_trap(tmp_path / "u.nc", without=("v",), hours=(0.0, 1.0)))
-    assert [one.quantity for one in found.holdings] == ["u"]
-    assert found.trial.obstacle == "it has u (u) but no v: download it along"
+    assert [one.quantity for one in found.quantities] == ["u"]
+    assert found.planning.obstacle == "it has u (u) but no v: download it along"
     assert (len(found.times.times), found.whole) == (2, 0)
-    assert found.lone == ()
 
 
 def test_two_files_that_belong_together(tmp_path: Path) -> None:
     u = _grib(tmp_path / "u.grib2", message("u", **TEN_METRES), message("u", stepRange=3, **TEN_METRES))
     v = _grib(tmp_path / "v.grib2", message("v", **TEN_METRES), message("v", stepRange=3, **TEN_METRES))
-    assert "no v" in _inventory(u).trial.obstacle
+    assert "no v" in _inventory(u).planning.obstacle
     found = _inventory(u, v)
-    assert (found.trial.obstacle, found.whole, len(found.files)) == ("", 2, 2)
-    assert found.trial.departures == (NOON, NOON + 3 * HOUR)
+    assert (found.planning.obstacle, found.whole, len(found.files)) == ("", 2, 2)
+    assert found.planning.departures == (NOON, NOON + 3 * HOUR)
     assert found.times.steps == ((3 * HOUR, NOON + 3 * HOUR),)
     assert found.runs == (NOON,)
 
@@ -145,32 +142,32 @@ def test_an_ensemble_asks_for_members(tmp_path: Path) -> None:
         {**axes, "u10": wind("number lat lon", *shape), "v10": wind("number lat lon", *shape)},
     )
     found = _inventory(path)
-    assert (found.members, found.alone, found.trial.members) == ((5, 6, 7, 8), False, (5, 6, 7, 8))
-    assert found.trial.obstacle == ""
-    assert found.holdings[0].members == 4
+    assert (found.members, found.also_without_member, found.planning.members) == ((5, 6, 7, 8), False, (5, 6, 7, 8))
+    assert found.planning.obstacle == ""
+    assert found.quantities[0].members == 4
 
 
 def test_missing_values_are_counted_and_placed(tmp_path: Path) -> None:
     found = _inventory(write_trap(tmp_path / "gap.nc", gap="nan", hours=(0.0, 6.0)))
-    u, v = found.count.found
+    u, v = found.missing.found
     assert (u.quantity, u.values, u.missing, v.missing) == ("u", 100, 1, 0)
     assert u.first is not None
     assert (u.first.level, u.first.time) == (Level("height", 100.0), NOON + 6 * HOUR)
-    assert found.trial.obstacle == ""  # it is missing at the edge, and planning was tried in the middle
+    assert found.planning.obstacle == ""  # it is missing at the edge, and planning was tried in the middle
 
 
 def test_of_many_sheets_a_sample_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_trap(tmp_path / "many.nc", hours=np.arange(30.0).tolist())
-    monkeypatch.setattr(module, "_MOST_SHEETS", 100)
-    monkeypatch.setattr(module, "_SAMPLED_SHEETS", 40)
+    monkeypatch.setattr(module, "_MOST_FIELDS", 100)
+    monkeypatch.setattr(module, "_SAMPLED_FIELDS", 40)
     found = _inventory(path)
-    assert (found.count.read, found.count.sheets, found.count.sampled) == (40, 120, True)
-    assert {one.quantity for one in found.count.found} == {"u", "v"}
-    assert not found.trial.whole
+    assert (found.missing.read, found.missing.fields, found.missing.read < found.missing.fields) == (40, 120, True)
+    assert {one.quantity for one in found.missing.found} == {"u", "v"}
+    assert not found.planning.all_tried
     monkeypatch.setattr(module, "_SAMPLED_VALUES", 110)
-    assert _inventory(path).count.read == 4  # of 25 values each
+    assert _inventory(path).missing.read == 4  # of 25 values each
     monkeypatch.setattr(module, "_SAMPLED_VALUES", 3)
-    assert _inventory(path).count.read == 1
+    assert _inventory(path).missing.read == 1
 
 
 def test_gaps_between_times_are_named(tmp_path: Path) -> None:
@@ -196,8 +193,8 @@ def test_winds_on_two_grids(tmp_path: Path) -> None:
     write_netcdf(small, {**AXES, "u10": wind("lat lon", 3, 4), "v10": wind("lat lon", 3, 4)})
     found = _inventory(small, large)
     assert [(grid.rows, grid.columns) for grid in found.grids] == [(3, 4), (5, 5)]
-    assert {(one.quantity, one.grid) for one in found.holdings} == {("u", 0), ("v", 0), ("u", 1), ("v", 1)}
-    assert "on other grids left out" in found.trial.said
+    assert {(one.quantity, one.grid) for one in found.quantities} == {("u", 0), ("v", 0), ("u", 1), ("v", 1)}
+    assert "on other grids left out" in found.planning.uses
 
 
 def test_what_cannot_be_read_is_told_and_does_not_stop_the_rest(tmp_path: Path) -> None:
@@ -207,17 +204,17 @@ def test_what_cannot_be_read_is_told_and_does_not_stop_the_rest(tmp_path: Path) 
         position += int.from_bytes(bad[position : position + 4])
     bad[position + 9 : position + 11] = (99).to_bytes(2)  # section 5: a way of packing that does not exist
     found = _inventory(_grib(tmp_path / "bad.grib2", bytes(good), bytes(bad)))
-    assert [one.quantity for one in found.count.found] == ["u"]
-    (broken,) = found.count.broken
+    assert [one.quantity for one in found.missing.found] == ["u"]
+    (broken,) = found.missing.broken
     assert "cannot be decoded" in broken
-    assert "cannot be decoded" in found.trial.obstacle
+    assert "cannot be decoded" in found.planning.obstacle
 
 
 def test_a_file_without_any_wind_has_an_inventory(tmp_path: Path) -> None:
     path = _grib(tmp_path / "z.grib2", message("gh", values=1500.0))
     found = _inventory(path)
-    assert "no wind that can be used" in found.trial.obstacle
-    assert [one.quantity for one in found.holdings] == ["height"]
+    assert "no wind that can be used" in found.planning.obstacle
+    assert [one.quantity for one in found.quantities] == ["height"]
     assert found.times.times == (NOON,)
 
 
