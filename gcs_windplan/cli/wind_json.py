@@ -4,47 +4,44 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cli.wind_tables import direction_from
 from gcs_windplan.wind.field_index import Level
-from gcs_windplan.wind.inspect.inventory import Inventory, QuantitySummary
+from gcs_windplan.wind.inspect.inventory import Inventory
 from gcs_windplan.wind.inspect.sounding import HeightWind, LevelWind, Sounding
 
 
 def format_inventory(inventory: Inventory) -> str:
-    """What is in the files. Times are ISO 8601 in UTC, levels in m or Pa, steps in seconds, spacings in degrees, m."""
-    series, count, planning = inventory.times, inventory.missing, inventory.planning
+    """What is in the files. Times are ISO 8601 in UTC, levels in m or Pa, spacings in m."""
+    planning = inventory.planning
     return _dumped(
         {
-            "files": [{**asdict(file), "path": str(file.path)} for file in inventory.files],
-            "runs": [_time(run) for run in inventory.runs],
+            "files": [asdict(file) for file in inventory.files],
+            "runs": _times(inventory.runs),
             "times": {
-                "count": len(series.times),
-                "all": [_time(time) for time in series.times],
-                "steps": [{"seconds": step, "until": _time(until)} for step, until in series.steps],
-                "gaps": [{"first": _time(g.first), "last": _time(g.last), "count": g.count} for g in series.gaps],
-                "with_whole_wind": inventory.whole,
+                "count": len(inventory.times),
+                "all": _times(inventory.times),
+                "gaps": [_times((gap.after, gap.before)) for gap in inventory.gaps],
+                "with_whole_wind": inventory.with_whole_wind,
             },
             "members": inventory.members,
             "also_without_member": inventory.also_without_member and bool(inventory.members),
-            "quantities": [_quantity(one) for one in inventory.quantities],
+            "quantities": [
+                {**asdict(one), "levels": [_level(level) for level in one.levels]} for one in inventory.quantities
+            ],
             "grids": [asdict(grid) for grid in inventory.grids],
-            "missing": {
-                "fields": count.fields,
-                "read": count.read,
-                "quantities": {one.quantity: {"values": one.values, "missing": one.missing} for one in count.found},
-                "broken": count.broken,
-            },
+            "fields_read": inventory.fields_read,
+            "broken": inventory.broken,
             "planning": {
                 **asdict(planning),
                 "possible": not planning.obstacle,
-                "departures": planning.departures and [_time(time) for time in planning.departures],
+                "departures": planning.departures and _times(planning.departures),
             },
         }
     )
@@ -55,8 +52,8 @@ def format_sounding(found: Sounding) -> str:
     document = {
         "latitude": found.place.latitude_deg,
         "longitude": found.place.longitude_deg,
-        "time": None if found.moment is None else _time(found.moment),
-        "between_times": [_time(time) for time in found.times],
+        "time": None if found.moment is None else _times([found.moment])[0],
+        "between_times": _times(found.times),
         "ground": _known(found.ground),
         "gusts": [{"member": m, "gust": gust} for m, gust in zip(found.members, found.gusts.tolist(), strict=False)],
         "uses": found.uses,
@@ -70,7 +67,11 @@ def format_sounding(found: Sounding) -> str:
 
 
 def _row(members: tuple[int | None, ...], one: LevelWind | HeightWind) -> dict[str, Any]:
-    winds = _winds(members, one.winds)
+    numbers = np.column_stack([one.winds, np.hypot(*one.winds.T), direction_from(one.winds)])
+    winds = [
+        {"member": member, **dict(zip(("u", "v", "speed", "from"), map(_known, row), strict=True))}
+        for member, row in zip(members, numbers.tolist(), strict=True)
+    ]
     return {"height": _known(one.height), "above_ground": _known(one.above_ground), "winds": winds}
 
 
@@ -78,8 +79,8 @@ def _dumped(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def _time(seconds: float) -> str:
-    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%SZ}"
+def _times(times: Sequence[float]) -> list[str]:
+    return [f"{datetime.fromtimestamp(time, UTC):%Y-%m-%dT%H:%M:%SZ}" for time in times]
 
 
 def _known(value: float) -> float | None:
@@ -87,17 +88,4 @@ def _known(value: float) -> float | None:
 
 
 def _level(level: Level) -> dict[str, Any]:
-    return {"kind": level.kind, "value": level.value, "text": str(level)}
-
-
-def _quantity(one: QuantitySummary) -> dict[str, Any]:
-    return {**asdict(one), "levels": [_level(level) for level in one.levels]}
-
-
-def _winds(members: tuple[int | None, ...], winds: FloatArray) -> list[dict[str, Any]]:
-    columns = [*winds.T, np.hypot(*winds.T), direction_from(winds)]
-    names = ("u", "v", "speed", "from")
-    return [
-        {"member": member, **dict(zip(names, map(_known, row), strict=True))}
-        for member, row in zip(members, np.stack(columns, axis=-1).tolist(), strict=True)
-    ]
+    return {**asdict(level), "text": str(level)}

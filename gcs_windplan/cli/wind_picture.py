@@ -96,11 +96,5 @@ def _where(found: WindMap) -> str:
         return "the nearest nodes of the grid"
     if found.stride == (1, 1):
         return "all nodes of the grid"
-    rows, columns = (f"every {_ordinal(stride)}" if stride > 1 else "every" for stride in found.stride)
-    return f"{rows} row and {columns} column of the grid"
-
-
-def _ordinal(number: int) -> str:
-    if number % 100 in (11, 12, 13):
-        return f"{number}th"
-    return f"{number}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th') }"
+    rows, columns = found.stride
+    return f"1 of {rows} rows and 1 of {columns} columns of the grid"

@@ -23,17 +23,15 @@ _SINGLY = 12  # members that are shown one by one
 
 def print_inventory(inventory: Inventory) -> None:
     """What is in the files: facts, then a table of quantities."""
-    files, missing = inventory.files, inventory.missing
+    files = inventory.files
     facts = [
         *(("file", words.file_line(file)) for file in files[:_FILES]),
         ("", f"and {len(files) - _FILES} more files" if len(files) > _FILES else ""),
         ("runs" if len(inventory.runs) > 1 else "run", words.runs_line(inventory.runs)),
-        ("times", words.times_line(inventory.times, inventory.whole)),
+        ("times", words.times_line(inventory)),
         ("members", words.members_line(inventory)),
         *(("grid", words.grid_line(grid)) for grid in inventory.grids),
-        ("also", words.beside_line(inventory)),
-        ("missing", words.missing_line(missing)),
-        *(("broken", text) for text in missing.broken),
+        *(("broken", text) for text in inventory.broken),
         *(("unused", text) for text in dict.fromkeys(text for file in files for text in file.unused)),
         ("planning", words.planning_line(inventory.planning)),
         ("asks for", words.asks_line(inventory.planning)),
@@ -103,12 +101,15 @@ def _quantities(inventory: Inventory) -> Table:
         table.add_column(name, overflow="fold")
     shown = {"grid": len(inventory.grids) > 1, "times": True, "members": bool(inventory.members), "fields": True}
     numbers = [name for name, there in shown.items() if there]
+    sampled = inventory.fields_read < sum(one.fields for one in inventory.quantities)
     for name in numbers:
         table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("missing in a sample" if sampled else "missing", justify="right")
     for one in inventory.quantities:
         cells = [one.quantity, words.names_cell(one), words.units_cell(one), words.levels_cell(one.levels)]
         counts = {"grid": one.grid + 1, "times": one.times, "members": one.members, "fields": one.fields}
-        table.add_row(*map(Text, cells), *(words.grouped(counts[name]) if counts[name] else "-" for name in numbers))
+        numbered = [words.grouped(counts[name]) if counts[name] else "-" for name in numbers]
+        table.add_row(*map(Text, cells), *numbered, words.missing_cell(one))
     return table
 
 

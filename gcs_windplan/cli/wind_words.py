@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 
 from gcs_windplan.wind.field_index import Level
-from gcs_windplan.wind.inspect.grids import GridSummary, Steps
-from gcs_windplan.wind.inspect.inventory import FileSummary, Inventory, MissingCount, MissingValues, QuantitySummary
+from gcs_windplan.wind.inspect.grids import GridSummary
+from gcs_windplan.wind.inspect.inventory import FileSummary, Inventory, QuantitySummary
 from gcs_windplan.wind.inspect.sounding import LevelWind, Sounding, describe
-from gcs_windplan.wind.inspect.time_series import TimeSeries
 from gcs_windplan.wind.inspect.trial import Feasibility
 from gcs_windplan.wind.pairing import format_time
 
@@ -18,7 +17,6 @@ _LISTED = 8  # levels, times
 _SHORT = 16  # characters of names
 _STEPS = ((86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s"))
 _UNITS = {"height": "m above ground", "altitude": "m above sea level", "pressure": "hPa"}
-_BESIDE = {"height": "heights of its levels", "terrain": "terrain", "gust": "gusts", "roughness": "roughness"}
 
 
 def file_line(file: FileSummary) -> str:
@@ -27,20 +25,16 @@ def file_line(file: FileSummary) -> str:
     return f"{file.path}: {', '.join(part for part in parts if part)}"
 
 
-def times_line(series: TimeSeries, whole: int) -> str:
+def times_line(inventory: Inventory) -> str:
     """The times: first, last, steps, gaps."""
-    times = series.times
-    if not times:
-        return "the files tell none"
-    if len(times) == 1:
-        return f"{format_time(times[0])} alone"
-    text = f"{say_span(times[0], times[-1])}, {len(times)} times, {_steps(series)}"
-    if series.gaps:
-        gaps = [
-            format_time(gap.first) + (f" to {format_time(gap.last)} ({gap.count})" if gap.count > 1 else "")
-            for gap in series.gaps
-        ]
-        text += f"; missing: {few(gaps)}"
+    times, whole = inventory.times, inventory.with_whole_wind
+    if len(times) < 2:
+        return f"{format_time(times[0])} alone" if times else "the files tell none"
+    steps = [round(later - earlier) for earlier, later in pairwise(times)]
+    every = f"every {say_step(steps[0])}" if len(set(steps)) == 1 else f"every {say_step(min(steps))} or more"
+    text = f"{say_span(times[0], times[-1])}, {len(times)} times, {every}"
+    if inventory.gaps:
+        text += f"; gaps: {few([say_span(gap.after, gap.before) for gap in inventory.gaps])}"
     return text + (f"; {whole or 'none'} of them with both parts of a wind" if whole != len(times) else "")
 
 
@@ -69,30 +63,6 @@ def grid_line(grid: GridSummary) -> str:
         named = f"{grid.name}, {grid.rows} x {grid.columns}"
     turned = "u and v follow its rows and columns and are turned to true north" if grid.turned else ""
     return "; ".join(part for part in (named, _spacing(grid), _area(grid), turned) if part)
-
-
-def beside_line(inventory: Inventory) -> str:
-    """What else there is that planning makes use of."""
-    there = {one.quantity for one in inventory.quantities}
-    kinds = {level.kind for one in inventory.quantities for level in one.levels}
-    hydrostatic = "height" not in there and there >= {"temperature", "pressure"}
-    needs_heights = bool(kinds & {"pressure", "model"}) and not hydrostatic
-    useful = {quantity: word for quantity, word in _BESIDE.items() if quantity != "height" or needs_heights}
-    have = [word for quantity, word in useful.items() if quantity in there]
-    have += ["temperature and pressure, for the heights of its levels"] if hydrostatic else []
-    lack = [f"no {word}" for quantity, word in useful.items() if quantity not in there]
-    return "; ".join(", ".join(words) for words in (have, lack) if words)
-
-
-def missing_line(count: MissingCount) -> str:
-    """How many values are missing."""
-    values = sum(one.values for one in count.found)
-    if not values:
-        return "not counted: no field can be read"
-    read = f"a sample of {count.read} of its" if count.read < count.fields else "all" if count.read > 1 else "its"
-    whence = f"{grouped(values)} values in {read} field{'s' if count.fields > 1 else ''}"
-    lacking = [_missing(one) for one in count.found if one.missing]
-    return f"{'; '.join(lacking)}; counted {whence}" if lacking else f"none of {whence}"
 
 
 def planning_line(planning: Feasibility) -> str:
@@ -172,6 +142,13 @@ def names_cell(one: QuantitySummary) -> str:
     return few(names, 4 if sum(map(len, names)) <= _SHORT else 1)
 
 
+def missing_cell(one: QuantitySummary) -> str:
+    """How many values are missing."""
+    if not one.values:
+        return "?"
+    return f"{100 * one.missing / one.values:.2g} %" if one.missing else "none"
+
+
 def short(level: Level) -> str:
     """A level's name in a table."""
     if level.kind == "unknown":
@@ -206,25 +183,6 @@ def say_step(seconds: float) -> str:
     return f"{seconds / size:g} {name}" if name != "d" or seconds > size else "24 h"
 
 
-def _steps(series: TimeSeries) -> str:
-    if not series.steps:
-        if len(series.times) <= _LISTED:
-            return f"uneven: {', '.join(format_time(time)[5:16] for time in series.times)}"
-        steps = [later - earlier for earlier, later in pairwise(series.times)]
-        return f"in uneven steps of {say_step(min(steps))} to {say_step(max(steps))}"
-    first, *rest = (f"every {say_step(step)}" for step, _ in series.steps)
-    until = [format_time(end) for _, end in series.steps]
-    return first + "".join(f" until {end}, then {step}" for end, step in zip(until, rest, strict=False))
-
-
-def _missing(one: MissingValues) -> str:
-    where = ""
-    if one.first is not None:
-        when = "" if one.first.time is None else f", {format_time(one.first.time)}"
-        where = f", first at {one.first.level}{when}"
-    return f"{one.quantity}: {grouped(one.missing)} ({100 * one.missing / one.values:.2g} %{where})"
-
-
 def _of_kind(kind: str, levels: Sequence[Level]) -> str:
     if kind in ("surface", "unknown"):
         return short(levels[0])
@@ -242,17 +200,10 @@ def _at(one: LevelWind) -> str:
 
 
 def _spacing(grid: GridSummary) -> str:
-    rows, columns = (None if step is None else step / 1000 for step in grid.spacing_metres)
-    kilometres = _by(" km", (rows, columns), 2)
-    if grid.spacing_degrees is None or not kilometres:
-        return f"every {kilometres}" if kilometres else ""
-    return f"every {_by('°', grid.spacing_degrees, 4)} ({kilometres})"
-
-
-def _by(unit: str, steps: Steps, digits: int) -> str:
     """Steps from row to row and column to column."""
-    known = [f"{float(f'{step:.{digits}g}') if step < 100 else round(step):g}" for step in steps if step is not None]
-    return f"{' x '.join(dict.fromkeys(known))}{unit}" if known else ""
+    steps = [step / 1000 for step in grid.spacing_metres if step is not None]
+    known = dict.fromkeys(f"{float(f'{step:.2g}') if step < 100 else round(step):g}" for step in steps)
+    return f"every {' x '.join(known)} km" if known else ""
 
 
 def _area(grid: GridSummary) -> str:

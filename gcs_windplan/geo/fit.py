@@ -33,9 +33,13 @@ class PolynomialFit:
         cls, centre: FloatArray, half_size: FloatArray, degree: int, fit_points: FloatArray, fit_values: FloatArray
     ) -> PolynomialFit:
         """The polynomial that comes nearest to `fit_values` (n, k) at `fit_points` (n, 2 or more)."""
-        powers = monomials((fit_points[:, :2] - centre) / half_size, degree)
-        coefficients, *_ = np.linalg.lstsq(powers, fit_values, rcond=None)
-        return cls(centre, half_size, degree, np.ascontiguousarray(coefficients))
+        u, v = ((fit_points[:, :2] - centre) / half_size).T
+        terms = exponents(degree)
+        by_power = sorted(range(len(terms)), key=terms.__getitem__)  # the order decides how the last digits are rounded
+        powers = np.stack([u ** terms[n][0] * v ** terms[n][1] for n in by_power], axis=-1)
+        coefficients = np.empty((len(terms), fit_values.shape[1]))
+        coefficients[by_power], *_ = np.linalg.lstsq(powers, fit_values, rcond=None)
+        return cls(centre, half_size, degree, coefficients)
 
     def at(self, points: FloatArray) -> FloatArray:
         """The values (n, k) at points (n, 2 or more); meaningless far outside of the fitted area."""

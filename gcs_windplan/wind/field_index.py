@@ -141,7 +141,7 @@ class Field2D:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FieldIndex:
-    """The fields of an open file, its title, and what in it is no wind or cannot be used, for people.
+    """The fields of an open file, its title and format, and what in it is no wind or cannot be used, for people.
 
     Only quantities named in `Quantity` are listed; `unused` says in words what was passed over for a reason that a
     pilot might want to know ("12 fields on a reduced Gaussian grid: regrid them"), not what simply is no wind.
@@ -151,3 +151,4 @@ class FieldIndex:
     fields: tuple[Field2D, ...]
     title: str = ""
     unused: tuple[str, ...] = ()
+    format: str = ""

@@ -46,7 +46,7 @@ def read_forecast(paths: Sequence[Path | str], query: ForecastQuery) -> Forecast
     >>> len(forecast.fields), [str(level) for level in forecast.levels[:2]]
     (10, ['10 m above ground', '40 m above ground'])
     >>> forecast.mean.at(np.array([[0.0, 0.0, 480.0]]), seconds=3600.0).round(1).tolist()
-    [[6.0, 2.2, 0.0]]
+    [[3.1, 5.0, 0.0]]
     """
     departure = query.departure
     if departure is not None and departure.tzinfo is None:

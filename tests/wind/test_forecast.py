@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import math
 import re
 from collections.abc import Callable
@@ -16,7 +17,7 @@ import pytest
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geodesy import GeoPoint, LocalFrame, rotate
-from gcs_windplan.wind import ForecastQuery, GriddedWind, Ground, read_forecast
+from gcs_windplan.wind import ForecastQuery, GriddedWind, Ground, read_forecast, reading
 from tests.wind.trap_file import FROM_WEST, write_trap
 
 ONE_CM_PER_SECOND = 0.01
@@ -331,3 +332,9 @@ def test_a_gap_between_its_times_is_said(trap: Trap) -> None:
     wind = read(trap(hours=[0.0, 1.0, 2.0, 13.0]), GREENWICH, _flat, NOON + timedelta(hours=0.5))
     assert "with a gap of 11 h" in wind.name
     assert "gap" not in read(trap(hours=[0.0, 3.0, 6.0]), GREENWICH, _flat, NOON).name
+
+
+def test_the_example_of_the_docstring(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(Path(__file__).parents[2])
+    done = doctest.testmod(reading)
+    assert (done.failed, done.attempted > 5) == (0, True)

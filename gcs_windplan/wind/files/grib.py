@@ -109,7 +109,7 @@ class _GribReader:
         else:
             self.fields += self.means
         unused = [f"{n} field{'s' if n > 1 else ''} {why}" for why, n in self.unused.items() if why and n]
-        return FieldIndex(self.path.name, tuple(with_terrain(self.fields)), self.title, tuple(unused))
+        return FieldIndex(self.path.name, tuple(with_terrain(self.fields)), self.title, tuple(unused), "GRIB")
 
     @contextmanager
     def naming_file(self) -> Iterator[None]:

@@ -44,7 +44,8 @@ def open_netcdf(path: Path) -> Iterator[FieldIndex]:
     except (OSError, RuntimeError) as error:
         raise WindError(Problem(f"cannot be read as NetCDF ({error})", file=path)) from error
     try:
-        yield _NetcdfReader(path, NetcdfFile(dataset)).index()
+        kind = "NetCDF4" if dataset.data_model.startswith("NETCDF4") else "NetCDF classic"
+        yield replace(_NetcdfReader(path, NetcdfFile(dataset)).index(), format=kind)
     finally:
         dataset.close()
 

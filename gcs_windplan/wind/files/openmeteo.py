@@ -107,7 +107,7 @@ def _index(path: Path) -> FieldIndex:
     if np.isfinite(elevations).any():
         fields.append(Field2D("terrain", SURFACE, grid, partial(_cut, elevations), "elevation", "m"))
     unused = dict.fromkeys(note for point in points for note in point.unused)
-    return FieldIndex(path.name, tuple(fields), "Open-Meteo", tuple(unused))
+    return FieldIndex(path.name, tuple(fields), "Open-Meteo", tuple(unused), "JSON")
 
 
 def _loaded(path: Path) -> Any:

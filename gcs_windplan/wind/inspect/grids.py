@@ -19,8 +19,7 @@ class GridSummary:
     """A grid: its name and size, where it lies [deg], and its steps in the middle.
 
     `west` in [-180, 180), `east` not before it, so that it may exceed 180 across the date line. `all_longitudes`: west
-    is only where the file begins. `spacing_degrees` where rows and columns are parallels and meridians.
-    `turned`: u and v follow rows and columns and are turned to true north when read.
+    is only where the file begins. `turned`: u and v follow rows and columns and are turned to true north when read.
     """
 
     name: str
@@ -31,7 +30,6 @@ class GridSummary:
     west: float
     east: float
     all_longitudes: bool
-    spacing_degrees: Steps | None
     spacing_metres: Steps
     turned: bool = False
 
@@ -39,17 +37,14 @@ class GridSummary:
 def summary_of(grid: Grid, turned: bool = False) -> GridSummary:
     """What and where a grid is."""
     west, east, closed = _longitudes(grid.longitudes)
-    degrees = _degrees(grid) if grid.regular else None
     south, north = float(grid.latitudes.min()), float(grid.latitudes.max())
-    return GridSummary(
-        grid.name, *grid.shape, south, north, west, east, closed, degrees, _metres(grid, degrees), turned
-    )
+    return GridSummary(grid.name, *grid.shape, south, north, west, east, closed, _spacing(grid), turned)
 
 
 def unit_vectors(latitudes: FloatArray, longitudes: FloatArray) -> FloatArray:
     """Places [deg] on a sphere of radius 1, shape (..., 3)."""
     phi, lam = np.radians(latitudes), np.radians(longitudes)
-    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=-1)
+    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi) + 0.0 * lam], axis=-1)
 
 
 def great_circle(chords: FloatArray) -> FloatArray:
@@ -76,27 +71,14 @@ def wrapped(degrees: FloatArray) -> FloatArray:
     return angles
 
 
-def _degrees(grid: Grid) -> Steps:
-    """The usual steps, free of the rounding errors of single precision."""
-    south_north, west_east = (
-        float(f"{np.median(np.abs(steps)):.5g}") if len(steps) else None
-        for steps in (np.diff(grid.latitudes), wrapped(np.diff(grid.longitudes)))
-    )
-    return south_north, west_east
-
-
-def _metres(grid: Grid, degrees: Steps | None) -> Steps:
+def _spacing(grid: Grid) -> Steps:
     """The steps in the middle of a grid [m]."""
-    if degrees is not None:
-        narrow = float(np.cos(np.radians(np.median(grid.latitudes))))
-        rows, columns = degrees
-        return (
-            None if rows is None else rows * METRES_PER_DEGREE,
-            None if columns is None else columns * narrow * METRES_PER_DEGREE,
-        )
     row, column = grid.shape[0] // 2, grid.shape[1] // 2
-    around = slice(max(row - 1, 0), row + 1), slice(max(column - 1, 0), column + 1)
-    nodes = unit_vectors(grid.latitudes[around], grid.longitudes[around])
+    rows, columns = slice(max(row - 1, 0), row + 1), slice(max(column - 1, 0), column + 1)
+    if grid.regular:
+        nodes = unit_vectors(grid.latitudes[rows, np.newaxis], grid.longitudes[columns])
+    else:
+        nodes = unit_vectors(grid.latitudes[rows, columns], grid.longitudes[rows, columns])
     steps = [great_circle(np.linalg.norm(np.diff(nodes, axis=axis), axis=-1)).ravel() for axis in (0, 1)]
     along_rows, along_columns = (float(step[-1]) if len(step) else None for step in steps)
     return along_rows, along_columns

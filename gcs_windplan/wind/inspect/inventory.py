@@ -5,8 +5,9 @@ Nothing has to be complete: what a file lacks is part of the answer.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.field_index import Field2D, FieldIndex, Grid, Level, Quantity
 from gcs_windplan.wind.inspect.grids import GridSummary, summary_of
-from gcs_windplan.wind.inspect.time_series import TimeSeries, series_of
 from gcs_windplan.wind.inspect.trial import Feasibility, try_planning
 from gcs_windplan.wind.pairing import pair_up
 
@@ -22,7 +22,6 @@ WIND: tuple[Quantity, ...] = ("u", "v", "speed", "direction")
 _ORDER: tuple[Quantity, ...] = (
     *WIND, "gust", "height", "terrain", "roughness", "temperature", "humidity", "pressure",
 )  # fmt: skip
-_COUNTED = _ORDER[:8]  # what missing values are counted of
 _DOWNWARDS = ("pressure", "model")  # levels that are numbered from the top
 
 _MOST_FIELDS, _MOST_VALUES = 2000, 50_000_000  # that are all read
@@ -33,7 +32,7 @@ _SAMPLED_FIELDS, _SAMPLED_VALUES = 200, 20_000_000  # that are read of more
 class FileSummary:
     """A file: its format and title, its number of fields, and what its reader passed over."""
 
-    path: Path
+    path: str
     format: str
     title: str
     fields: int
@@ -41,11 +40,19 @@ class FileSummary:
 
 
 @dataclass(frozen=True, slots=True)
+class TimeGap:
+    """A step between two times [s since 1970, UTC] that is longer than the one before and the one behind it."""
+
+    after: float
+    before: float
+
+
+@dataclass(frozen=True, slots=True)
 class QuantitySummary:
     """Fields of one quantity in one unit on one kind of level and one grid.
 
     `names` are the file's own. `levels` go from the ground up. `times` and `members` count those that are there; `grid`
-    is the grid's place in `Inventory.grids`.
+    is the grid's place in `Inventory.grids`. `missing` of `values` are missing in those fields that were read.
     """
 
     quantity: Quantity
@@ -56,48 +63,31 @@ class QuantitySummary:
     members: int
     fields: int
     grid: int
-
-
-@dataclass(frozen=True, slots=True)
-class MissingValues:
-    """Missing values of a quantity among those that were read, and the first field that misses any."""
-
-    quantity: Quantity
     values: int
     missing: int
-    first: Field2D | None
-
-
-@dataclass(frozen=True, slots=True)
-class MissingCount:
-    """The values that were read to count what is missing; `read` of `fields`, all or a random sample.
-
-    `broken` tells in words why fields could not be read.
-    """
-
-    read: int
-    fields: int
-    found: tuple[MissingValues, ...]
-    broken: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
     """What is in some files that belong together.
 
-    `times` are those for which there is wind, or part of one; `whole` how many of them have both parts on some level.
-    `members` of an ensemble; `also_without_member`: there are also winds without a member.
+    `times` [s since 1970, UTC] are those for which there is wind, or part of one, `gaps` the steps between them that
+    are longer than those around. `with_whole_wind`: how many times have both parts on some level. `members` of an
+    ensemble; `also_without_member`: there are also winds without a member. `fields_read`, all or a random sample, to
+    count missing values; `broken` tells why some could not be.
     """
 
     files: tuple[FileSummary, ...]
     runs: tuple[float, ...]
-    times: TimeSeries
-    whole: int
+    times: tuple[float, ...]
+    gaps: tuple[TimeGap, ...]
+    with_whole_wind: int
     members: tuple[int, ...]
     also_without_member: bool
     quantities: tuple[QuantitySummary, ...]
     grids: tuple[GridSummary, ...]
-    missing: MissingCount
+    fields_read: int
+    broken: tuple[str, ...]
     planning: Feasibility
 
 
@@ -107,58 +97,51 @@ def take_inventory(paths: Sequence[Path], indexes: Sequence[FieldIndex]) -> Inve
     wind = [one for one in fields if one.quantity in WIND] or fields
     grids = list({one.grid.key: one.grid for one in (*wind, *fields)}.values())
     members = {one.member for one in wind}
+    times = tuple(sorted({one.time for one in wind if one.time is not None}))
+    counts, broken = _count_missing(_sample(fields) if _are_many(fields) else fields)
     return Inventory(
         files=tuple(
-            FileSummary(path, _format(path), index.title, len(index.fields), index.unused)
+            FileSummary(str(path), index.format, index.title, len(index.fields), index.unused)
             for path, index in zip(paths, indexes, strict=True)
         ),
         runs=tuple(sorted({one.run for one in wind if one.run is not None})),
-        times=series_of(one.time for one in wind if one.time is not None),
-        whole=len({pair.first.time for pair in pair_up(fields)}),
+        times=times,
+        gaps=gaps_in(times),
+        with_whole_wind=len({pair.first.time for pair in pair_up(fields)}),
         members=tuple(sorted(member for member in members if member is not None)),
         also_without_member=None in members,
-        quantities=_quantities(fields, grids),
+        quantities=_quantities(fields, grids, counts),
         grids=tuple(summary_of(grid, _is_turned(grid, fields)) for grid in grids),
-        missing=_count_missing([one for one in fields if one.quantity in _COUNTED]),
+        fields_read=len(counts),
+        broken=broken,
         planning=try_planning(indexes, all_of_them=not _are_many(fields)),
     )
 
 
-def _count_missing(fields: Sequence[Field2D]) -> MissingCount:
-    """How many values are missing; of many fields a sample is read, always the same one."""
-    values = {quantity: [0, 0] for quantity in _COUNTED}
-    first: dict[Quantity, Field2D] = {}
+def gaps_in(times: Sequence[float]) -> tuple[TimeGap, ...]:
+    """The gaps in ascending times. Where longer steps go on, as forecasts do after some days, there is none."""
+    steps = [round(later - earlier) for earlier, later in pairwise(times)]  # files count hours as fractions of days
+    longer = [n for n in range(1, len(steps) - 1) if steps[n - 1] < steps[n] > steps[n + 1]]
+    return tuple(TimeGap(times[n], times[n + 1]) for n in longer)
+
+
+def _count_missing(fields: Sequence[Field2D]) -> tuple[dict[int, tuple[int, int]], tuple[str, ...]]:
+    """Of some fields, by their id, how many values they have and how many are missing; and why some cannot be read."""
+    counts: dict[int, tuple[int, int]] = {}
     broken: dict[str, None] = {}
-    chosen = _sample(fields) if _are_many(fields) else fields
-    for one in chosen:
+    for one in fields:
         try:
-            whole = one.read(*(np.arange(size, dtype=np.int64) for size in one.grid.shape))
+            values = one.read(*(np.arange(size, dtype=np.int64) for size in one.grid.shape))
         except WindError as error:
             broken[str(error)] = None
-            continue
-        missing = whole.size - int(np.isfinite(whole).sum())
-        values[one.quantity][0] += whole.size
-        values[one.quantity][1] += missing
-        if missing:
-            first.setdefault(one.quantity, one)
-    found = tuple(MissingValues(q, read, missing, first.get(q)) for q, (read, missing) in values.items() if read)
-    return MissingCount(len(chosen), len(fields), found, tuple(broken))
+        else:
+            counts[id(one)] = values.size, values.size - int(np.isfinite(values).sum())
+    return counts, tuple(broken)
 
 
-def _format(path: Path) -> str:
-    """The format of a file that a reader has opened, as its first bytes tell it."""
-    with path.open("rb") as file:
-        head = file.read(2000)
-    if head.startswith(b"\x89HDF"):
-        return "NetCDF4"
-    if head.startswith(b"CDF"):
-        return "NetCDF classic"
-    at = head.find(b"GRIB")
-    is_json = head.lstrip(b"\xef\xbb\xbf\xff\xfe \r\n\t\0")[:1] in (b"{", b"[")
-    return "JSON" if is_json else f"GRIB edition {head[at + 7]}"
-
-
-def _quantities(fields: Sequence[Field2D], grids: Sequence[Grid]) -> tuple[QuantitySummary, ...]:
+def _quantities(
+    fields: Sequence[Field2D], grids: Sequence[Grid], counts: Mapping[int, tuple[int, int]]
+) -> tuple[QuantitySummary, ...]:
     """The fields in groups, wind first."""
     numbers = {grid.key: number for number, grid in enumerate(grids)}
     groups: dict[tuple[int, int, str, str], list[Field2D]] = {}
@@ -175,6 +158,8 @@ def _quantities(fields: Sequence[Field2D], grids: Sequence[Grid]) -> tuple[Quant
             members=len({one.member for one in group if one.member is not None}),
             fields=len(group),
             grid=key[1],
+            values=sum(counts[id(one)][0] for one in group if id(one) in counts),
+            missing=sum(counts[id(one)][1] for one in group if id(one) in counts),
         )
         for key, group in sorted(groups.items(), key=lambda item: item[0])
     )

@@ -50,21 +50,21 @@ def test_a_projected_grid_across_greenwich() -> None:
     assert (found.west, found.east, found.all_longitudes) == (pytest.approx(-3.0), pytest.approx(3.0), False)
 
 
-def test_spacing_in_degrees_and_metres() -> None:
+def test_spacing_of_parallels_and_meridians() -> None:
+    """Across as at the middle row, 59.5 degrees north."""
     found = summary_of(_grid([8.0, 8.25, 8.5], [60.0, 59.5, 59.0]))
-    assert found.spacing_degrees == (0.5, 0.25)
-    assert found.spacing_metres == pytest.approx((0.5 * 111_195, 0.25 * 111_195 * np.cos(np.radians(59.5))))
+    expected = (0.5 * 111_195, 0.25 * 111_195 * np.cos(np.radians(59.5)))
+    assert found.spacing_metres == pytest.approx(expected, rel=ONE_PART_IN_A_HUNDRED)
 
 
 def test_one_row_has_no_spacing() -> None:
-    assert summary_of(_grid([8.0], [47.0])).spacing_degrees == (None, None)
+    assert summary_of(_grid([8.0], [47.0])).spacing_metres == (None, None)
     assert summary_of(_grid([8.0, 9.0], [47.0])).spacing_metres[0] is None
 
 
-def test_summary_of_a_projected_grid_is_told_in_metres() -> None:
+def test_spacing_of_a_projected_grid() -> None:
     y, x = np.mgrid[50.0:52.0:41j, 3.0:5.0:21j]
     found = summary_of(Grid(y, x, "bent"))
-    assert found.spacing_degrees is None
     expected = (0.05 * 111_195, 0.1 * 111_195 * np.cos(np.radians(51.0)))
     assert found.spacing_metres == pytest.approx(expected, rel=ONE_PART_IN_A_HUNDRED)
 
