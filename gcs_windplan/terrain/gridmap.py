@@ -26,7 +26,7 @@ STRAIGHTNESS = 0.05  # [m] the most by which a piece of a leg may bulge when it 
 HIGHEST_DEGREE = 6
 FARTHEST = 600_000.0  # [m] from the origin; LocalFrame itself ends at 1000 km
 
-Chain: TypeAlias = Callable[[FloatArray], FloatArray]
+Projection: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 class Georeference(Protocol):
@@ -81,8 +81,8 @@ class GridMap:
         return cls(coefficients, extent)
 
     @classmethod
-    def fitted(cls, chain: Chain, extent: Extent, name: str) -> GridMap:
-        """The lowest degree that follows `chain`, (n, 2) to (n, 2), to 1 cm inside of `extent`.
+    def fitted(cls, projection: Projection, extent: Extent, name: str) -> GridMap:
+        """The lowest degree that follows `projection`, (n, 2) to (n, 2), to 1 cm inside of `extent`.
 
         Judged at places that took no part in the fit. Raises TerrainError if degree 6 does not do.
         """
@@ -91,7 +91,7 @@ class GridMap:
         rim = [(a, b) for a in (-1.0, 0.1, 1.0) for b in (-1.0, -0.1, 1.0)]
         check_points = centre + np.concatenate([rng.uniform(-1, 1, (400, 2)), np.array(rim)]) * half_sizes
         fit_points = chebyshev_points(centre, half_sizes, 16)
-        fit_values, check_values = chain(fit_points), chain(check_points)
+        fit_values, check_values = projection(fit_points), projection(check_points)
         if not (np.isfinite(fit_values).all() and np.isfinite(check_values).all()):
             raise TerrainError(f"{name}: reaches beyond where its projection holds; plan a smaller area")
         error = math.inf
@@ -166,10 +166,10 @@ def fit_grid_map(georeference: Georeference, frame: LocalFrame, shape: tuple[int
     if max(-west, east, -south, north) > FARTHEST:
         raise TerrainError(f"{name}: too large for one local frame; give an area of the mission's size")
 
-    def chain(local: FloatArray) -> FloatArray:
+    def projection(local: FloatArray) -> FloatArray:
         return georeference.to_grid(*frame.to_geographic(local))
 
-    return GridMap.fitted(chain, extent, name)
+    return GridMap.fitted(projection, extent, name)
 
 
 def _outline(shape: tuple[int, int]) -> FloatArray:

@@ -34,9 +34,9 @@ class Assembly:
     def build(self, source: str) -> Forecast:
         """The forecast, named after its source."""
         selection, query = self.selection, self.query
-        law, said = self._law()
+        law, law_text = self._law()
         name = f"{source}: " * bool(source) + ", ".join(
-            [self._levels(), said, *selection.notes, *(["extended"] if query.extend else [])]
+            [self._levels(), law_text, *selection.notes, *(["extended"] if query.extend else [])]
         )
         heights = self._heights(selection.members[0])
         upwards = sorted(heights, key=lambda level: float(np.mean(heights[level])))
@@ -142,12 +142,16 @@ class Assembly:
     def _hydrostatic_heights(self, time: float | None, member: int | None) -> dict[Level, FloatArray]:
         """The heights of model levels from temperature and pressure; none where the files lack what that takes."""
         pressure = self._companion("pressure", time, member, SURFACE)
-        warm = self._on_model_levels("temperature", time, member)
+        temperatures = self._on_model_levels("temperature", time, member)
         half_levels = next((s.half_levels for s in self.selection.others if s.half_levels is not None), None)
-        if pressure is None or half_levels is None or not warm or not np.isfinite(self._terrain).all():
+        if pressure is None or half_levels is None or not temperatures or not np.isfinite(self._terrain).all():
             return {}
         found = heights_of_levels(
-            half_levels, self._read(pressure), self._terrain, warm, self._on_model_levels("humidity", time, member)
+            half_levels,
+            self._read(pressure),
+            self._terrain,
+            temperatures,
+            self._on_model_levels("humidity", time, member),
         )
         return {level: found[int(level.value)] for level in self.selection.above_sea if int(level.value) in found}
 
@@ -195,13 +199,13 @@ class Assembly:
     def _law(self) -> tuple[Law, str]:
         """The law below the lowest level, and what is said of it."""
         query = self.query
-        carry = _HIGHEST_CARRIED if query.carried and not self.selection.above_sea else 0.0
-        beyond = f", and above up to {carry:g} m" if carry else ""
+        carried_to = _HIGHEST_CARRIED if query.carried and not self.selection.above_sea else 0.0
+        beyond = f", and above up to {carried_to:g} m" if carried_to else ""
         if query.exponent is not None:
-            return Law(POWER, query.exponent, carry), f"below by a power law ({query.exponent:g}){beyond}"
+            return Law(POWER, query.exponent, carried_to), f"below by a power law ({query.exponent:g}){beyond}"
         own = any(field2d.quantity == "roughness" for field2d in self.selection.others) and query.roughness is None
         rough = "the file's roughness" if own else f"roughness {query.roughness or ROUGHNESS:g} m"
-        return Law(LOG, 0.0, carry), f"below by a log law ({rough}){beyond}"
+        return Law(LOG, 0.0, carried_to), f"below by a log law ({rough}){beyond}"
 
     def _levels(self) -> str:
         """What the levels are, for people."""

@@ -64,8 +64,8 @@ class LimitedWind:
         fields = at_each([member.field for member in members], points, seconds)
         counts = [3 * len(member.gusts) for member in members]
         gusts = [gust for member in members for gust in member.gusts]
-        blown = at_each(gusts, points, seconds) if gusts else np.empty((len(points), 0))
-        parts = np.split(blown, np.cumsum(counts)[:-1], axis=1)
+        gust_winds = at_each(gusts, points, seconds) if gusts else np.empty((len(points), 0))
+        parts = np.split(gust_winds, np.cumsum(counts)[:-1], axis=1)
         closed = [
             member.closing(fields[:, 3 * k : 3 * k + 3], parts[k] if counts[k] else None)
             for k, member in enumerate(members)

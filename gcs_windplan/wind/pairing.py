@@ -52,8 +52,8 @@ class WindPair:
         """
         first, second = self.first.read(rows, columns), self.second.read(rows, columns)
         if self.polar:
-            whence = np.radians(second)
-            return np.stack([-first * np.sin(whence), -first * np.cos(whence)], axis=-1)
+            from_angle = np.radians(second)
+            return np.stack([-first * np.sin(from_angle), -first * np.cos(from_angle)], axis=-1)
         if self.along_grid:
             cos, sin = np.cos(angle), np.sin(angle)
             first, second = first * cos - second * sin, first * sin + second * cos
@@ -239,10 +239,10 @@ def _of_members(pairs: list[WindPair], members: Members) -> list[WindPair]:
             reason="members",
             members=tuple(named),
         )
-    wanted = set(named) if members == "all" else set(members)
-    if missing := sorted(wanted - set(named)):
+    chosen = set(named) if members == "all" else set(members)
+    if missing := sorted(chosen - set(named)):
         raise WindError(f"it has no member {', '.join(map(str, missing))}, but {_listed([str(m) for m in named])}")
-    return [pair for pair in pairs if pair.first.member in wanted]
+    return [pair for pair in pairs if pair.first.member in chosen]
 
 
 def _newest(pairs: list[WindPair], notes: list[str]) -> list[WindPair]:

@@ -98,9 +98,9 @@ def _level(handle: int) -> Level | None:
         layer: tuple[LevelKind, float] | None = ("model", 1.0) if first == second and first in _LAYERS else None
         found = _LEVELS_2.get(first) if second == 255 else layer
         scaled, scale = (number_of(handle, f"scale{which}OfFirstFixedSurface") for which in ("dValue", "Factor"))
-        told = UNKNOWN not in (scaled, scale)
-        value = scaled / 10.0**scale if told else 0.0
-        if found is not None and found[1] and not told:
+        known = UNKNOWN not in (scaled, scale)
+        value = scaled / 10.0**scale if known else 0.0
+        if found is not None and found[1] and not known:
             return None
     return None if found is None else Level(found[0], value * found[1])
 

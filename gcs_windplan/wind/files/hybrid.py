@@ -50,7 +50,7 @@ def model_levels(file: NetcdfFile, axis: Variable, data: Variable) -> ModelLevel
     for found in (
         _between_bounds(file, axis, top_down),
         _interfaces(file, axis, data),
-        None if middles is None else _made(*(part[top_down] for part in middles)),
+        None if middles is None else _from_full_levels(*(part[top_down] for part in middles)),
     ):
         if found is None or not _ends_at_ground(*found):
             continue
@@ -104,7 +104,7 @@ def _interfaces(file: NetcdfFile, axis: Variable, data: Variable) -> Halves | No
     return found[0][order], found[1][order]
 
 
-def _made(a: FloatArray, b: FloatArray) -> Halves | None:
+def _from_full_levels(a: FloatArray, b: FloatArray) -> Halves | None:
     """Half levels from the levels in the middle between them, from the top down, where all levels are there.
 
     Each level's a and b are the means of its two half levels' (Simmons and Burridge 1981), and both are 0 at the top.

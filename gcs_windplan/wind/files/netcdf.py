@@ -74,7 +74,7 @@ class _NetcdfReader:
         self._file = file
         self._axes = Axes(file)
         self._layouts = NetcdfLayouts(self._axes)
-        self._passed_over: dict[str, list[str]] = {}
+        self._unused: dict[str, list[str]] = {}
         self._broken = False
 
     def index(self) -> FieldIndex:
@@ -83,8 +83,8 @@ class _NetcdfReader:
             fields = [field2d for variable in self._file.variables.values() for field2d in self._fields_of(variable)]
             fields = self._on_one_grid(fields)
             if self._file.groups:
-                self._pass_over(", ".join(self._file.groups), "groups are not read: lift them with `ncks -G :`")
-            unused = tuple(_unused_note(names, reason) for reason, names in self._passed_over.items())
+                self._note_unused(", ".join(self._file.groups), "groups are not read: lift them with `ncks -G :`")
+            unused = tuple(_unused_note(names, reason) for reason, names in self._unused.items())
             if self._broken and not any(field2d.quantity in ("u", "v", "speed") for field2d in fields):
                 raise WindError("; ".join(unused))
         return FieldIndex(self._path.name, tuple(fields), self._file.title, unused)
@@ -96,7 +96,7 @@ class _NetcdfReader:
         found = meaning(variable)
         if found is None:
             if looks_like_wind(variable) and len(variable.dimensions) > 1:
-                self._pass_over(variable.name, "by name or attributes no wind at a height, or a statistic of it")
+                self._note_unused(variable.name, "by name or attributes no wind at a height, or a statistic of it")
             return []
         if any(self._role(variable, dimension) == "depth" for dimension in variable.dimensions):
             return []
@@ -110,11 +110,11 @@ class _NetcdfReader:
                 raise
         except WindError as error:
             if is_wind or len(variable.dimensions) > 1:
-                self._pass_over(variable.name, str(error))
+                self._note_unused(variable.name, str(error))
             return []
 
-    def _pass_over(self, name: str, reason: str) -> None:
-        self._passed_over.setdefault(reason, []).append(name)
+    def _note_unused(self, name: str, reason: str) -> None:
+        self._unused.setdefault(reason, []).append(name)
 
     def _source(self, variable: Variable, found: Meaning) -> _Source:
         """Where a variable's values stand. Raises `WindError` for other grids, and axes that are not known."""
@@ -131,7 +131,7 @@ class _NetcdfReader:
 
     def _check_axes(self, column: Variable) -> None:
         """Raise `WindError` for axes that are not known."""
-        timed = {d for time in self._axes.beside(column, *CLOCK) for d in time.dimensions} | {"Time"}  # WRF's
+        timed = {d for time in self._axes.auxiliary(column, *CLOCK) for d in time.dimensions} | {"Time"}  # WRF's
         for dimension, size in zip(column.dimensions, column.shape, strict=True):
             if size > 1 and dimension not in timed and self._role(column, dimension) is None:
                 raise WindError(
@@ -141,7 +141,7 @@ class _NetcdfReader:
 
     def _role(self, variable: Variable, dimension: str) -> Role | None:
         """What a dimension counts; members and versions need no numbers to be known."""
-        axis = self._axes.along(variable, dimension)
+        axis = self._axes.coordinate_along(variable, dimension)
         if axis is not None:
             return self._axes.role(axis)
         named = role(self._file.variables.get(dimension, Variable(dimension, (dimension,), (1,), {})))
@@ -183,7 +183,7 @@ class _NetcdfReader:
         for dimension in variable.dimensions:
             size = self._file.dimensions[dimension]
             if size > 1 and self._role(variable, dimension) == "member":
-                axis = self._axes.along(variable, dimension)
+                axis = self._axes.coordinate_along(variable, dimension)
                 values = np.arange(size) if axis is None else self._file.values(axis)
                 known = bool((np.abs(values) < 2**31).all()) and len(np.unique(values.astype(np.int64))) == size
                 return dimension, [int(value) for value in (values if known else np.arange(size))]
@@ -193,14 +193,14 @@ class _NetcdfReader:
         """Whether u or v follow the grid: on grids of their own kind weather models write them so by custom."""
         if source.quantity not in ("u", "v") or source.layout.grid.regular:
             return False
-        told = source.meaning.along_grid
-        if told is None and "south_north" not in source.variable.dimensions:  # WRF is known for it
-            self._pass_over(
+        along_grid = source.meaning.along_grid
+        if along_grid is None and "south_north" not in source.variable.dimensions:  # WRF is known for it
+            self._note_unused(
                 source.variable.name,
                 "used as following the grid, not true north, as most models write it, for the file does not tell: if"
                 " that is wrong, set the `standard_name` to eastward_wind and northward_wind",
             )
-        return True if told is None else told
+        return True if along_grid is None else along_grid
 
     def _on_one_grid(self, fields: list[Field2D]) -> list[Field2D]:
         """Without u and v of levels where they share no grid: those stand on the sides of their cells."""
@@ -214,18 +214,18 @@ class _NetcdfReader:
         }
         torn = {s.name for s in fields if s.quantity in ("u", "v") and s.level in apart}
         for name in sorted(torn):
-            self._pass_over(name, "u and v stand at different places, on a staggered grid: bring them to one first")
+            self._note_unused(name, "u and v stand at different places, on a staggered grid: bring them to one first")
         return [s for s in fields if not (s.quantity in ("u", "v") and s.level in apart)]
 
     def _read(self, source: _Source, place: dict[str, int], rows: IntArray, columns: IntArray) -> FloatArray:
         """The values of a field in the unit of its quantity."""
-        variable, held, units = source.variable, source.quantity, source.variable.raw_text("units")
+        variable, quantity, units = source.variable, source.quantity, source.variable.raw_text("units")
         with self._naming_file(variable.name):
             values = self._plane(source, place, rows, columns)
             if source.meaning.logarithm:
                 return unlogged(values, variable.name)
-            values = converted(values, held, variable.name, units)
-        if held == "direction":
+            values = converted(values, quantity, variable.name, units)
+        if quantity == "direction":
             values = np.mod(values + (180.0 if source.meaning.towards else 0.0), 360.0)
         return values
 
@@ -239,7 +239,7 @@ class _NetcdfReader:
         if source.version is None:
             return self._file.plane(variable, place, *across)
         size = self._file.dimensions[source.version]
-        axis = self._axes.along(variable, source.version)
+        axis = self._axes.coordinate_along(variable, source.version)
         order = np.arange(size) if axis is None else np.argsort(self._file.values(axis))
         planes = [self._file.plane(variable, {**place, source.version: int(one)}, *across) for one in order]
         first = planes[0]

@@ -46,14 +46,14 @@ class NetcdfLayouts:
                 f"they stand between the nodes, on a staggered grid ({', '.join(staggered)}): bring them to its centres"
                 " first, for example with wrf-python's `destagger`"
             )
-        latitudes = self._axes.beside(variable, "latitude")
-        longitudes = self._axes.beside(variable, "longitude")
+        latitudes = self._axes.auxiliary(variable, "latitude")
+        longitudes = self._axes.auxiliary(variable, "longitude")
         return (
             self._regular(variable, latitudes, longitudes)
-            or self._curved(*(self._meshes(variable, role) for role in ("latitude", "longitude")))
+            or self._curved(*(self._node_coordinates(variable, role) for role in ("latitude", "longitude")))
             or self._projected(variable)
             or self._point(variable)
-            or self._nowhere(variable, latitudes, longitudes)
+            or self._refuse(variable, latitudes, longitudes)
         )
 
     def _regular(
@@ -63,18 +63,18 @@ class NetcdfLayouts:
         rows = next((v for v in latitudes if len(v.dimensions) == 1), None)
         columns = next((v for v in longitudes if len(v.dimensions) == 1), None)
         if rows is None and columns is not None and not latitudes:
-            rows = self._axes.alone(variable, "latitude")
+            rows = self._axes.single_value(variable, "latitude")
         elif columns is None and rows is not None and not longitudes:
-            columns = self._axes.alone(variable, "longitude")
+            columns = self._axes.single_value(variable, "longitude")
         if rows is None or columns is None or rows.dimensions == columns.dimensions:
             return None
-        return self._laid_out(variable, rows, columns)
+        return self._layout_on(variable, rows, columns)
 
     def _point(self, variable: Variable) -> NetcdfLayout | None:
-        rows, columns = self._axes.alone(variable, "latitude"), self._axes.alone(variable, "longitude")
-        return None if rows is None or columns is None else self._laid_out(variable, rows, columns)
+        rows, columns = self._axes.single_value(variable, "latitude"), self._axes.single_value(variable, "longitude")
+        return None if rows is None or columns is None else self._layout_on(variable, rows, columns)
 
-    def _laid_out(self, variable: Variable, rows: Variable, columns: Variable) -> NetcdfLayout:
+    def _layout_on(self, variable: Variable, rows: Variable, columns: Variable) -> NetcdfLayout:
         key = (rows.name, columns.name)
         if key not in self._regulars:
             latitudes, longitudes = (self._degrees(v).ravel() for v in (rows, columns))
@@ -83,9 +83,9 @@ class NetcdfLayouts:
         along = (next((d for d in v.dimensions if d in variable.dimensions), None) for v in (rows, columns))
         return NetcdfLayout(self._regulars[key], *along)
 
-    def _meshes(self, variable: Variable, role: Role) -> list[Variable]:
+    def _node_coordinates(self, variable: Variable, role: Role) -> list[Variable]:
         """Latitudes or longitudes of each node; WRF repeats them for every time, which a terrain may lack."""
-        beside = [v for v in self._axes.beside(variable, role) if len(v.dimensions) > 1]
+        beside = [v for v in self._axes.auxiliary(variable, role) if len(v.dimensions) > 1]
         repeated = [v for v in self._axes.all(role) if len(v.dimensions) > 2]
         return beside + [v for v in repeated if set(v.dimensions[-2:]) <= set(variable.dimensions)]
 
@@ -118,9 +118,9 @@ class NetcdfLayouts:
         if (latitudes == latitudes[:, :1]).all() and (longitudes == longitudes[:1]).all():
             latitudes, longitudes = latitudes[:, 0], longitudes[0]
         name = f"{latitude.name}, {longitude.name} on {rows}, {columns}"
-        return NetcdfLayout(Grid(latitudes, longitudes, name, self._runs_back(columns)), rows, columns)
+        return NetcdfLayout(Grid(latitudes, longitudes, name, self._descends(columns)), rows, columns)
 
-    def _runs_back(self, dimension: str) -> bool:
+    def _descends(self, dimension: str) -> bool:
         """Whether the numbers along a dimension descend."""
         axis = self._file.variables.get(dimension)
         if axis is None or axis.dimensions != (dimension,):
@@ -141,7 +141,7 @@ class NetcdfLayouts:
     def _projected(self, variable: Variable) -> NetcdfLayout | None:
         """The nodes by the grid mapping."""
         ys, xs = (
-            [v for v in self._axes.beside(variable, role) if len(v.dimensions) == 1] for role in ("y", "x")
+            [v for v in self._axes.auxiliary(variable, role) if len(v.dimensions) == 1] for role in ("y", "x")
         )  # fmt: skip
         if not xs or not ys or xs[0].dimensions == ys[0].dimensions:
             return None
@@ -168,7 +168,7 @@ class NetcdfLayouts:
         every = [v for v in self._file.variables.values() if v.text("grid_mapping_name")]
         return every[0] if len(every) == 1 else None
 
-    def _nowhere(self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]) -> NetcdfLayout:
+    def _refuse(self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]) -> NetcdfLayout:
         shared = {v.dimensions for v in latitudes} & {v.dimensions for v in longitudes}
         along = next((dimensions for dimensions in shared if len(dimensions) == 1), None)
         if along is not None:

@@ -201,10 +201,10 @@ def _all_series(
         member = int(match["member"] or 0) if ensemble else None
         series = _Series(quantity, _level(match), member, name, unit)
         found[series] = converted(values, quantity, name, unit)
-    said = [f"{', '.join(empty)}: without any value"] if empty else []
+    notes = [f"{', '.join(empty)}: without any value"] if empty else []
     if models:
-        said.append(f"fields of several models ({', '.join(sorted(models))}): ask for one model")
-    return found, said
+        notes.append(f"fields of several models ({', '.join(sorted(models))}): ask for one model")
+    return found, notes
 
 
 def _level(match: re.Match[str]) -> Level:
