@@ -134,7 +134,7 @@ def test_facts_of_an_inventory(tmp_path: Path) -> None:
     assert "10, 100 m above ground" in text
     assert "latitudes 49 to 53, longitudes -2 to 2" in flat
     assert [line.split()[-1] for line in text.splitlines() if re.match(" [uv] ", line)] == ["%", "none"]
-    assert re.search(r"^ u .* 0\.4 %$", text, re.MULTILINE)
+    assert re.search(r"^ u .* 0\.4 % *$", text, re.MULTILINE)
     assert "planning ready: u, v, 2 levels" in flat
     assert "asks for `departure` from 2026-05-01 12:00 to 17:00 UTC" in flat
 

@@ -338,3 +338,25 @@ def test_the_example_of_the_docstring(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(Path(__file__).parents[2])
     done = doctest.testmod(reading)
     assert (done.failed, done.attempted > 5) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("frame", "departure", "reason"),
+    [(GREENWICH, NOON - timedelta(hours=2), "time"), (DAVOS, NOON, "area"), (GREENWICH, NOON, None)],
+)
+def test_an_error_tells_its_reason_and_its_file(
+    trap: Trap, frame: LocalFrame, departure: datetime, reason: str | None
+) -> None:
+    """Too early, too far away, or without a wind at all."""
+    path = trap(hours=(0.0, 6.0), without=() if reason else ("v",))
+    with pytest.raises(WindError) as error:
+        read_forecast([path], ForecastQuery(frame, departure=departure, area=(0.0, 0.0, 1000.0, 1000.0)))
+    assert error.value.reason == reason
+    assert [problem.file for problem in error.value.problems] == [path]
+
+
+def test_an_error_names_the_members_to_choose_from() -> None:
+    front = Path(__file__).parents[2] / "missions" / "wind" / "front_synthetic.nc"
+    with pytest.raises(WindError) as error:
+        read_forecast([front], ForecastQuery(JACKSBORO, departure=datetime(2026, 5, 1, 15, tzinfo=UTC)))
+    assert (error.value.reason, error.value.members) == ("members", tuple(range(10)))

@@ -98,6 +98,8 @@ def take_sounding(
     ground = float(_over(first, first.columns.terrain[np.newaxis]))
     ground = ground if np.isfinite(ground) else np.nan
     levels = tuple(sorted(_levels(forecast, ground), key=_upwards))
+    if not levels:
+        raise WindError(f"all its levels lie below its own ground there, {ground:.0f} m above mean sea level")
     times = () if moment is None else tuple(first.columns.times.tolist())
     return Sounding(
         place=place,
@@ -143,6 +145,7 @@ def level_field(field: GriddedWind, number: int) -> GriddedWind:
 
 
 def _without_ground(field: GriddedWind) -> GriddedWind:
+    """The field over a plain at mean sea level."""
     return replace(field, ground=None, columns=field.columns._replace(terrain=np.zeros_like(field.columns.terrain)))
 
 
@@ -191,7 +194,7 @@ def _at_height(forecast: Forecast, levels: Sequence[LevelWind], ground: float, a
     heights = [one.above_ground if asked.above_ground and np.isnan(ground) else one.height for one in levels]
     below = [one for one, height in zip(levels, heights, strict=True) if height <= z + 1e-6]
     above = [one for one, height in zip(levels, heights, strict=True) if height >= z - 1e-6]
-    if not levels or not np.isfinite(winds).all():
+    if not np.isfinite(winds).all():
         raise WindError(f"{asked} is {_where(below, above)}: the wind is not known there")
     return HeightWind(
         height=asked.metres + ground if asked.above_ground else asked.metres,

@@ -100,6 +100,12 @@ def test_levels_below_the_forecasts_ground_do_not_count(tmp_path: Path) -> None:
     assert found.levels[0].above_ground == pytest.approx(500.0, abs=ONE_METRE)
 
 
+def test_a_forecast_whose_levels_are_all_below_its_ground_has_no_sounding(tmp_path: Path) -> None:
+    path = _pressures(tmp_path / "p.nc", terrain=2500.0)
+    for height in (None, HeightAsked(100.0, True)):
+        assert "all its levels lie below its own ground there, 2500 m above mean sea level" in _refused(path, height)
+
+
 def test_pressure_levels_without_heights_are_of_no_use_to_planning(tmp_path: Path) -> None:
     path = tmp_path / "p.grib2"
     path.write_bytes(b"".join(message(n, values=v, level=p) for n, v in (("u", 3.0), ("v", 4.0)) for p in (850, 500)))
