@@ -147,11 +147,11 @@ def _options(
     from gcs_windplan.link.standin.world import planned_world, simulator_world, world_at
     from gcs_windplan.mission.firmware import firmware_of
 
+    firmware = firmware_of(autopilot, "multicopter")
     if request is not None:
         world = planned_world(request, home, wind)
     else:
-        world = world_at(home, wind) if home is not None else simulator_world(autopilot, wind)
-    firmware = firmware_of(autopilot, "multicopter")
+        world = world_at(home, wind) if home is not None else simulator_world(firmware, wind)
     profile = planned_profile(firmware, request.vehicle if request is not None else None)
     if airspeed is not None:
         profile = replace(profile, airspeed=airspeed)
@@ -168,12 +168,13 @@ def _request(mission: Path | None) -> Request | None:
 
 def _autopilot(name: str | None, request: Request | None) -> Autopilot:
     from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.mission.firmware import autopilots
 
     if name is None:
         return request.vehicle.autopilot if request is not None else "ardupilot"
-    if name not in ("ardupilot", "px4"):
-        raise InputError(Problem(f"{name!r} is none of ardupilot, px4", "--autopilot"))
-    return name  # type: ignore[return-value]
+    if name not in autopilots():
+        raise InputError(Problem(f"{name!r} is none of {', '.join(autopilots())}", "--autopilot"))
+    return name
 
 
 def _wind(text: str | None) -> WindField | None:

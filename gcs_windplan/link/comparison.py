@@ -21,7 +21,8 @@ from gcs_windplan.mission import (
     takes_place,
 )
 from gcs_windplan.mission.firmware import CommandRule, Firmware, MissionType, Retention, stores
-from gcs_windplan.mission.firmware.storage import FLOAT, float_text, same_float
+from gcs_windplan.mission.firmware.floats import float_text, same_float
+from gcs_windplan.mission.firmware.storage import FLOAT
 
 _NOTHING = stores()  # of a rally point's parameters
 

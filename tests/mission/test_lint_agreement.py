@@ -25,7 +25,7 @@ from gcs_windplan.link.standin.storage import infeasible
 from gcs_windplan.link.wire import item_to_message
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, takes_place
 from gcs_windplan.mission.firmware import firmware_of
-from gcs_windplan.mission.firmware.storage import float_text, same_float, single
+from gcs_windplan.mission.firmware.floats import float_text, same_float, single
 from gcs_windplan.mission.lint import lint
 
 CORPUS = Path(__file__).parents[3] / "shared" / "data" / "missions"

@@ -17,19 +17,13 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Frame
 from gcs_windplan.mission.firmware.firmware import CommandRule, Firmware, Jumps, Mode, Parameter, Transfers, stores
-from gcs_windplan.mission.firmware.storage import (
+from gcs_windplan.mission.firmware.storage import BIT0, FLAG, FLOAT, HALF, LANDING_YAW, NONE, SIGN, Storage
+from gcs_windplan.mission.firmware.whole_numbers import (
     ALTITUDE,
-    BIT0,
     CM,
-    FLAG,
-    FLOAT,
-    HALF,
     I8,
     I16,
     I32,
-    LANDING_YAW,
-    NONE,
-    SIGN,
     U8,
     U16,
     Bounded,
@@ -37,9 +31,8 @@ from gcs_windplan.mission.firmware.storage import (
     CircleRadius,
     Clamped,
     SignedWhole,
-    Storage,
     Turns,
-    Whole,
+    WholeNumber,
 )
 from gcs_windplan.vehicle import MotionProfile
 
@@ -280,7 +273,7 @@ ARDUCOPTER: Final = Firmware(
     # mavlink_int_to_mission_cmd; MISSION counts as GLOBAL there
     frames=frozenset((Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_TERRAIN_ALT, Frame.MISSION)),
     rally_frames=frozenset((Frame.GLOBAL_RELATIVE_ALT,)),  # MissionItemProtocol_Rally.cpp before 4.6
-    rally=Whole(-0x8000, 0x7FFF),  # AP_Rally.h, RallyLocation: whole metres in 16 bits
+    rally=WholeNumber(-0x8000, 0x7FFF),  # AP_Rally.h, RallyLocation: whole metres in 16 bits
     altitude=ALTITUDE,  # measured: 61.999 comes back as 61.99
     highest=83_000.0,  # Location.h, LOCATION_ALT_MAX_M
     rally_highest=32_768.0,  # RallyLocation, 16 bits of whole metres
@@ -309,6 +302,7 @@ ARDUCOPTER: Final = Firmware(
     takeoff="required",  # mode_auto.cpp, init: "Missing Takeoff Cmd"
     lowest_takeoff=1.0,  # takeoff.cpp and mode_auto.cpp, takeoff_start: 100 cm
     takeoff_goes_to_place=False,  # mode_auto.cpp, do_takeoff
+    ends_over_home=True,  # Plane::exit_mission_callback changes to RTL
     lands_and_goes_on=True,  # mode_auto.cpp, verify_land and verify_RTL
     zero_place_is_here=True,  # mode_auto.cpp, loc_from_cmd
     circles={mavlink.MAV_CMD_NAV_LOITER_TURNS: 2},  # mode_auto.cpp, do_circle; it stays in place at all others
@@ -322,6 +316,7 @@ ARDUCOPTER: Final = Firmware(
     starts_armed=False,
     stream_groups=True,
     guided_takeoff=None,
+    simulator_home=(-35.363262, 149.165237, 584.0),  # Tools/autotest/locations.txt, CMAC
     cruise=12.0,  # ArduPlane's AIRSPEED_CRUISE
     plane_return=100.0,  # ArduPlane's RTL_ALTITUDE
     zero_altitude=frozenset((*_CIRCLES, *_WAYPOINTS)),  # mode_auto.cpp, loc_from_cmd: 0 in any frame

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from gcs_windplan.mission.commands import Frame, plain_frame
-from gcs_windplan.mission.firmware.storage import CENTIMETRE, NONE, Altitude, Storage
+from gcs_windplan.mission.firmware.storage import NONE, Storage
+from gcs_windplan.mission.firmware.whole_numbers import CENTIMETRE, CutAltitude
 from gcs_windplan.vehicle import Autopilot, MotionProfile, VehicleType
 
 MissionType: TypeAlias = Literal["mission", "fence", "rally"]
@@ -140,11 +141,13 @@ class Firmware:
     one, in the frames of `zero_frames`; `zero_place_is_here` says so of latitude and longitude. `takeoff` says what
     comes of a mission without one: it is refused, the vehicle climbs by itself, or nothing. `lowest_takeoff` [m] is the
     least that one climbs. `takeoff_goes_to_place`: it is followed by a leg to its place. `lands_and_goes_on`: a mission
-    goes on after a landing with a new take-off. `circles` are the commands whose parameter of that index is the radius
-    of circles flown, `circle_radius` [m] the one flown where none is named.
+    goes on after a landing with a new take-off. `ends_over_home`: one that ends in the air leads a fixed-wing home.
+    `circles` are the commands whose parameter of that index is the radius of circles flown, `circle_radius` [m] the
+    one flown where none is named.
 
     How it flies by default: `motion` is a multicopter's, `cruise` [m/s] a fixed-wing's airspeed and `plane_return` [m]
-    its height above home on the way back, None where that is a multicopter's and never lower than it flies.
+    its height above home on the way back, None where that is a multicopter's and never lower than it flies. Its own
+    simulator stands at `simulator_home` (latitude, longitude [deg], height AMSL [m]).
 
     How it talks: the first of `modes` is the one after boot, `own_modes` name those that it takes for what it does.
     `integers_as_bytes`: an integer parameter travels as its bytes in a float's place, not as its value (mavlink.io,
@@ -178,6 +181,7 @@ class Firmware:
     lowest_takeoff: float | None
     takeoff_goes_to_place: bool
     lands_and_goes_on: bool
+    ends_over_home: bool
     zero_place_is_here: bool
     circles: Mapping[int, int]
     circle_radius: float
@@ -191,6 +195,7 @@ class Firmware:
     stream_groups: bool
     guided_takeoff: float | None
     cruise: float
+    simulator_home: tuple[float, float, float]
     plane_return: float | None
     zero_altitude: frozenset[int] = frozenset()
     zero_frames: frozenset[int] = frozenset()
@@ -234,7 +239,7 @@ class Firmware:
     @property
     def cuts_altitudes(self) -> bool:
         """Whether heights are stored in centimetres."""
-        return isinstance(self.altitude, Altitude)
+        return isinstance(self.altitude, CutAltitude)
 
     def mode_for(self, activity: Activity) -> Mode:
         """The mode in which the vehicle does something of its own, or stays where it is."""

@@ -26,7 +26,8 @@ from gcs_windplan.mission.firmware.firmware import (
     Transfers,
     stores,
 )
-from gcs_windplan.mission.firmware.storage import FLAG, FLOAT, I16, NONE, U16, UNREAD, YAW, Nearest, Storage
+from gcs_windplan.mission.firmware.storage import FLAG, FLOAT, NONE, UNREAD, YAW, Storage
+from gcs_windplan.mission.firmware.whole_numbers import I16, U16, Nearest
 from gcs_windplan.vehicle import MotionProfile
 
 
@@ -260,6 +261,7 @@ MULTICOPTER: Final = Firmware(
     takeoff="climbs first",  # mission.cpp, do_need_vertical_takeoff
     lowest_takeoff=None,
     takeoff_goes_to_place=True,
+    ends_over_home=False,
     lands_and_goes_on=False,  # it disarms
     zero_place_is_here=False,
     circles={},  # multicopters have no such item
@@ -273,6 +275,7 @@ MULTICOPTER: Final = Firmware(
     starts_armed=True,
     stream_groups=False,
     guided_takeoff=2.5,  # MIS_TAKEOFF_ALT
+    simulator_home=(47.397742, 8.545594, 488.0),  # px4_sitl, Zurich
     cruise=15.0,  # FW_AIRSPD_TRIM
     plane_return=None,
     not_flown=_CONDITIONS,  # checkMissionItemValidity does not have them

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from functools import cache
-from pathlib import Path
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.mission.firmware.firmware import Firmware
@@ -15,7 +14,8 @@ from gcs_windplan.vehicle import Autopilot, VehicleType
 @cache
 def all_firmwares() -> tuple[Firmware, ...]:
     """Every firmware for every kind of vehicle, in the order of the files."""
-    names = sorted(module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]))
+    folders = importlib.import_module(__package__).__path__
+    names = sorted(module.name for module in pkgutil.iter_modules(folders))
     modules = (importlib.import_module(f"{__package__}.{name}") for name in names)
     return tuple(one for module in modules for one in getattr(module, "FIRMWARES", ()))
 

@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.geodesy import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Frame, plain_frame
 from gcs_windplan.mission.firmware import Feasibility, Firmware
-from gcs_windplan.mission.firmware.storage import float_text
+from gcs_windplan.mission.firmware.floats import float_text
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import TAKEOFFS, Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.mission import Mission

@@ -6,7 +6,8 @@ import math
 
 from gcs_windplan.mission.commands import Command, takes_place
 from gcs_windplan.mission.firmware import Firmware, Storage
-from gcs_windplan.mission.firmware.storage import NONE, UNREAD, float_text
+from gcs_windplan.mission.firmware.floats import float_text
+from gcs_windplan.mission.firmware.storage import NONE, UNREAD
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Effect, Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.lint.meaning import meaning

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs_windplan.mission.commands import Command, Frame, is_global, plain_frame, takes_place
 from gcs_windplan.mission.firmware import Firmware
-from gcs_windplan.mission.firmware.storage import float_text, same_float
+from gcs_windplan.mission.firmware.floats import float_text, same_float
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.mission import Mission

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Command, Frame, frame_name, is_global, plain_frame, takes_place
 from gcs_windplan.mission.firmware import CommandRule, Firmware
-from gcs_windplan.mission.firmware.storage import float_text
+from gcs_windplan.mission.firmware.floats import float_text
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.mission import Mission

@@ -9,7 +9,7 @@ import pytest
 from gcs_windplan.link.standin import storage
 from gcs_windplan.link.standin.items import MISSION, RALLY, Refusal, StoredItem
 from gcs_windplan.mission.firmware import firmware_of
-from gcs_windplan.mission.firmware.storage import single
+from gcs_windplan.mission.firmware.floats import single
 
 from .speaking import DELAY, JUMP, LAND, LATITUDE, LOITER_TIME, LONGITUDE, RALLY_POINT, RTL, SPEED, TAKEOFF, WAYPOINT
 

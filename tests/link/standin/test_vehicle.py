@@ -452,7 +452,7 @@ def test_fly_starts_by_itself():
 
 @pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
 def test_told_no_place_it_stands_where_the_first_mission_begins(autopilot):
-    bench = Bench(autopilot, simulator_world(autopilot))
+    bench = Bench(autopilot, simulator_world(firmware_of(autopilot, "multicopter")))
     bench.wait(3.0)
     assert abs(bench.last("GLOBAL_POSITION_INT").lat) != 365_000_000
     first = at(0, 0, 20, command=say.TAKEOFF)
