@@ -21,7 +21,8 @@ from gcs_windplan.mission.fence import (
     rally_items,
     rally_of,
 )
-from gcs_windplan.mission.items import Home, Mission, MissionItem, degrees_e7
+from gcs_windplan.mission.items import Home, MissionItem, degrees_e7
+from gcs_windplan.mission.mission import Mission
 
 __all__ = [
     "Command",

@@ -16,6 +16,7 @@ from gcs_windplan.assessment.figures import AssessedMission
 from gcs_windplan.assessment.home import APART, first_place
 from gcs_windplan.assessment.rules.places import Found, at_stop
 from gcs_windplan.mission import Command, command_name
+from gcs_windplan.mission.firmware import firmware_of
 
 _LANDING_APART: Final = 5.0  # [m] the autopilot feels for the ground, but from another height
 
@@ -88,6 +89,6 @@ def _aloft(case: Case) -> str:
     """What a vehicle does whose mission ends in the air."""
     if case.hovers:
         return "hovers there"
-    if case.autopilot == "ardupilot":  # Plane::exit_mission_callback changes to RTL
+    if firmware_of(case.autopilot, case.vehicle_type).ends_over_home:
         return "circles over home"
     return "circles there"

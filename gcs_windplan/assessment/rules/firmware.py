@@ -7,15 +7,16 @@ from collections.abc import Iterator
 from gcs_windplan.assessment.assessment import Finding, Severity
 from gcs_windplan.assessment.figures import AssessedMission
 from gcs_windplan.assessment.rules.places import Found
-from gcs_windplan.mission.lint import FINER_THAN_FLOWN, Firmware, lint, told
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.lint import FINER_THAN_FLOWN, finding_lines, lint
 
 
 def firmware(mission: AssessedMission) -> Iterator[Found]:
-    """What it rejects is a danger, what it takes otherwise than written a warning; items alike are told once."""
+    """What it rejects is a danger, what it takes otherwise than written a warning; items alike are said once."""
     case = mission.case
-    name = Firmware(case.autopilot, case.vehicle_type).full_name
-    found = lint(case.mission, case.autopilot, case.vehicle_type)
-    for one in told([finding for finding in found if finding.rule not in FINER_THAN_FLOWN]):
+    own = firmware_of(case.autopilot, case.vehicle_type)
+    found = lint(case.mission, own)
+    for one in finding_lines([finding for finding in found if finding.rule not in FINER_THAN_FLOWN]):
         severity: Severity = "danger" if one.effect == "rejected" else "warning"
-        facts = {"effect": one.effect, "firmware": name, "line": one.line}
+        facts = {"effect": one.effect, "firmware": own.full_name, "line": one.line}
         yield Finding(f"firmware-{one.rule}", severity, item=one.item, facts=facts), None
