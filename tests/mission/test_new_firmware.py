@@ -23,7 +23,7 @@ from gcs_windplan.standin.rules import Parked
 from gcs_windplan.standin.servers import mission_server
 from gcs_windplan.standin.storage import store
 
-from ..link.standin import speaking as say
+from ..standin import speaking as say
 
 FILE = '''
 """A firmware that was not there before."""
