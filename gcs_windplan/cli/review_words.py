@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from gcs_windplan.flight import clock
+from gcs_windplan.report import words
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment, Finding
@@ -29,13 +30,11 @@ def lines(assessment: Assessment) -> Iterator[str]:
     yield _head(assessment)
     yield _air(assessment)
     for finding in assessment.findings:
-        yield f"{finding.severity.upper() if finding.severity == 'danger' else finding.severity}: {_said(finding)}"
+        yield f"{finding.severity.upper() if finding.severity == 'danger' else finding.severity}: {_text(finding)}"
     for remark in assessment.remarks:
         yield f"note: {remark}"
-    counts = [(severity, sum(one.severity == severity for one in assessment.findings)) for severity in
-              ("danger", "warning")]  # fmt: skip
-    told = ", ".join(f"{n} {severity}{'s' * (n > 1)}" for severity, n in counts if n)
-    yield f"{assessment.name}: {told + ': ' if told else ''}{_VERDICTS[assessment.verdict]}"
+    counts = words.counts(assessment.findings)
+    yield f"{assessment.name}: {counts + ': ' if counts else ''}{_VERDICTS[assessment.verdict]}"
 
 
 def _head(assessment: Assessment) -> str:
@@ -59,7 +58,7 @@ def _air(assessment: Assessment) -> str:
     return "; ".join(parts)
 
 
-def _said(finding: Finding) -> str:
+def _text(finding: Finding) -> str:
     where = "" if finding.latitude_deg is None else f" [{finding.latitude_deg:.6f}, {finding.longitude_deg:.6f}"
     where += f", {finding.distance / 1000:.2f} km along" if where and finding.distance is not None else ""
     return f"{finding.message}{where + ']' if where else ''}"

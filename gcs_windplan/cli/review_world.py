@@ -118,7 +118,7 @@ def with_given_home(case: Case, options: Options) -> Case:
 def _refuse_limits_unknown(case: Case, options: Options) -> None:
     """A limit of gusts that no forecast tells, or of a battery that no airframe has, would be kept by anything."""
     if options.max_gust is not None and not case.gusts:
-        text = f"no gusts are told by the wind ({case.wind.name}): leave it out, or take a forecast with gusts"
+        text = f"the wind has no gusts ({case.wind.name}): leave it out, or take a forecast with gusts"
         raise InputError(Problem(text, "--max-gust"))
     if options.min_battery is not None and case.airframe is None:
         raise InputError(Problem("the battery is not known: leave it out, or give an airframe", "--min-battery"))

@@ -8,7 +8,7 @@
       points [[latitude, longitude, altitude above home], ...]
 
 So QGroundControl writes and uploads them (GeoFenceController.cc, RallyPointManager.cc), and so MAVSDK imports them.
-QGroundControl passes over version 1, and so does this reader, but says it.
+QGroundControl ignores version 1, and so does this reader, with a note.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def _degrees(point: GeoPoint) -> list[float]:
 
 
 def read_fence(root: Node, repairs: Repairs) -> Fence | None:
-    """The fence of a .plan file, None where it has none; every part that cannot be used is left out and said."""
+    """The fence of a .plan file, None where it has none; every part that cannot be used is left out and noted."""
     node = _part(root, "geoFence", ("circles", "polygons", "polygon", "breachReturn"), repairs)
     if node is None:
         return None
@@ -89,7 +89,7 @@ def read_fence(root: Node, repairs: Repairs) -> Fence | None:
 
 
 def read_rally(root: Node, repairs: Repairs) -> tuple[RallyPoint, ...]:
-    """The rally points of a .plan file, altitudes above home; those that cannot be used are left out and said."""
+    """The rally points of a .plan file, altitudes above home; those that cannot be used are left out and noted."""
     node = _part(root, "rallyPoints", ("points",), repairs)
     return () if node is None else tuple(_usable(node, "points", _rally_point, repairs))
 
@@ -107,8 +107,8 @@ def _part(root: Node, key: str, contents: Sequence[str], repairs: Repairs) -> No
         return node
     held = [name for name in contents if node.value.get(name)]
     if held:
-        said = "has no version" if version is None else f"is of version {version}"
-        repairs.add(f"{key} {said}, and only {_VERSION} is known; its {' and '.join(held)} were left out")
+        found = "has no version" if version is None else f"is of version {version}"
+        repairs.add(f"{key} {found}, and only {_VERSION} is known; its {' and '.join(held)} were left out")
     return None
 
 

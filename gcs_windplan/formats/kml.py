@@ -67,11 +67,11 @@ def _add_way(document: Xml.Element, assessment: Assessment) -> None:
 
 def _add_stop(folder: Xml.Element, stop: Stop, assessment: Assessment) -> None:
     mark = _placemark(folder, f"{stop.number} {stop.label}", "stop")
-    told = [f"item {stop.item}" if stop.item else "home", f"{_clock(stop.seconds)} min after arming"]
-    told += [f"{stop.altitude:.1f} m above sea level"]
-    told += [f"{stop.above_ground:.1f} m above ground"] if math.isfinite(stop.above_ground) else []
-    told += [f"{100 * stop.left:.0f} % of the battery left"] if stop.left is not None else []
-    _child(mark, "description", ", ".join(told))
+    lines = [f"item {stop.item}" if stop.item else "home", f"{_clock(stop.seconds)} min after arming"]
+    lines += [f"{stop.altitude:.1f} m above sea level"]
+    lines += [f"{stop.above_ground:.1f} m above ground"] if math.isfinite(stop.above_ground) else []
+    lines += [f"{100 * stop.left:.0f} % of the battery left"] if stop.left is not None else []
+    _child(mark, "description", ", ".join(lines))
     if assessment.departure is not None and math.isfinite(stop.seconds):
         when = assessment.departure + timedelta(seconds=round(stop.seconds))
         _child(_child(mark, "TimeStamp"), "when", when.strftime("%Y-%m-%dT%H:%M:%SZ"))

@@ -123,7 +123,7 @@ def read_plan(path: str | os.PathLike[str]) -> ReadMission:
 def parse_plan(text: str, name: str = "<text>") -> ReadMission:
     """Read the text of a .plan file; `name` stands for the file in messages.
 
-    What cannot be used of fence and rally points is left out, which is said among the repairs. Raises FormatError
+    What cannot be used of fence and rally points is left out, which the repairs note. Raises FormatError
     for other versions and for complex items that do not carry their simple ones.
     """
     return _parse(text, Path(name), Repairs())

@@ -6,7 +6,7 @@
     seq current frame command p1 p2 p3 p4 latitude longitude altitude autocontinue
 
 Written as the strictest reader wants it (QGroundControl: single tabs, 12 fields, no comments, no blank
-lines). Read as the most patient ones do, and every repair is said.
+lines). Read as the most patient ones do, and every repair is noted.
 """
 
 from __future__ import annotations

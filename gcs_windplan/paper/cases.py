@@ -93,6 +93,6 @@ def make_vehicle(model: SpeedModel = "paper") -> Vehicle:
     return Vehicle(AIRSPEED, AIRSPEED, AIRSPEED, speed_model=model)
 
 
-def stand(rules: Clearance, places: FloatArray) -> FloatArray:
+def lift_to_veil(rules: Clearance, places: FloatArray) -> FloatArray:
     """Places (n, 2) lifted to the veil, (n, 3)."""
     return rules.lifted(np.asarray(places, dtype=np.float64), VEIL_HEIGHT)

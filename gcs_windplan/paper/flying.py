@@ -10,7 +10,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.flight.sampling import integrate
-from gcs_windplan.paper.cases import PaperCase, stand
+from gcs_windplan.paper.cases import PaperCase, lift_to_veil
 from gcs_windplan.paper.published import COSTS, TIME
 from gcs_windplan.planning.cost import CostChoice, LegCost
 from gcs_windplan.planning.search import WindGraph, find_path, sample_wind
@@ -47,12 +47,12 @@ def seconds_on_the_slope(points: FloatArray, wind: WindField, vehicle: Vehicle) 
 
 def sites_of(rules: Clearance, cases: Sequence[PaperCase]) -> FloatArray:
     """All starts and goals of some cases at the veil's height (n, 3), each once."""
-    return stand(rules, np.array(sorted({place for case in cases for place in (case.start, case.goal)})))
+    return lift_to_veil(rules, np.array(sorted({place for case in cases for place in (case.start, case.goal)})))
 
 
 def find_route(graph: WindGraph, choice: CostChoice, case: PaperCase, vehicle: Vehicle) -> Route:
     """The graph's path of least cost, as the search returns it: the paper shapes nothing."""
-    start, goal = stand(graph.veil.clearance, np.array([case.start, case.goal]))
+    start, goal = lift_to_veil(graph.veil.clearance, np.array([case.start, case.goal]))
     cost = LegCost(choice, case.wind, vehicle, graph.veil.edge_length, float(np.linalg.norm(goal - start)))
     path = find_path(graph, cost, start, goal)
     return Route(path.points, seconds_of(path.points, case.wind, vehicle), path.expanded, path.seconds)

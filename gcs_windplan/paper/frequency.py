@@ -9,7 +9,15 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.paper.cases import CASES, OTHER_READINGS, PaperCase, PlanePoint, make_rules, make_vehicle, stand
+from gcs_windplan.paper.cases import (
+    CASES,
+    OTHER_READINGS,
+    PaperCase,
+    PlanePoint,
+    lift_to_veil,
+    make_rules,
+    make_vehicle,
+)
 from gcs_windplan.paper.flying import Route, find_route, shape_route
 from gcs_windplan.paper.graphs import SPACING, THIRTY_SIX, TWENTY, lay_roadmap, lay_uniform
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID, TIME
@@ -121,7 +129,7 @@ def sweep(
 ) -> list[TrialFlight]:
     """All trials."""
     exact = make_rules(terrain)
-    sites = stand(exact, np.array(sorted({place for pair in pairs for place in pair})))
+    sites = lift_to_veil(exact, np.array(sorted({place for pair in pairs for place in pair})))
     return [
         trial
         for name, veil, model in _graphs(exact, sites, seeds)
@@ -228,7 +236,7 @@ def _flight(trial: TrialFlight) -> tuple[str, PlanePoint, PlanePoint]:
 def seed_table(terrain: Dem, seeds: Sequence[int]) -> Table:
     """On how many roadmaps the main choices show each effect."""
     exact, vehicle = make_rules(terrain), make_vehicle()
-    sites = stand(exact, np.array(sorted({place for case in CASES for place in (case.start, case.goal)})))
+    sites = lift_to_veil(exact, np.array(sorted({place for case in CASES for place in (case.start, case.goal)})))
     trials: list[TrialFlight] = []
     for seed in seeds:
         veil = lay_roadmap(exact, sites, seed)

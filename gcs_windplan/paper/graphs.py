@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.paper.cases import AREA, VEIL_HEIGHT, stand
+from gcs_windplan.paper.cases import AREA, VEIL_HEIGHT, lift_to_veil
 from gcs_windplan.planning.veil import SHARE_OF_GRID, PrmVeil, lay_prm
 from gcs_windplan.scene import Clearance
 
@@ -31,7 +31,7 @@ def lay_uniform(rules: Clearance, sites: FloatArray, spacing: float = SPACING, r
     side = np.linspace(AREA.west, AREA.east, 1 + round((AREA.east - AREA.west) / spacing))
     places = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
     apart = np.linalg.norm(places[:, None] - sites[None, :, :2], axis=2).min(axis=1)
-    nodes = np.concatenate([sites, stand(rules, places[apart > 1e-6 * spacing])])
+    nodes = np.concatenate([sites, lift_to_veil(rules, places[apart > 1e-6 * spacing])])
     return lay_prm(rules, AREA, 0, 0, (VEIL_HEIGHT,), nodes, radius * spacing)
 
 

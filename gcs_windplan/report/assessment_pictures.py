@@ -32,7 +32,8 @@ def draw_assessment_map(assessments: Sequence[Assessment], dpi: int = 120) -> by
         ground,
         WindArrows(first.ground.wind_places, first.ground.winds, f"{first.ground.wind_height:.0f} m above ground"),
         [_route(one, first) for one in assessments],
-        areas=first.outlines,
+        areas=[outline for outline in first.outlines if outline.kind != "obstacle"],
+        solids=[outline.corners for outline in first.outlines if outline.kind == "obstacle"],
         places=[MapPlace(str(stop.number), stop.east, stop.north) for stop in first.stops] if letters == ("",) else (),
         signs=[sign for letter, one in zip(letters, assessments, strict=True) for sign in _signs(letter, one, first)],
     )

@@ -25,6 +25,7 @@ _KM: Final = 1000.0  # [m]
 _PIXELS: Final = 600  # of relief along the longer side
 _HEAD, _FOOT = 0.85, 1.05  # [inch] above and below the map
 _SIDE = 7.4  # [inch] the longer side of the map itself
+_SHAFT: Final = 0.0163  # [inch] an arrow's width
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +204,7 @@ class MapPanel:
         self.axes.plot(still[:, 0], still[:, 1], ".", color=INK, alpha=0.5, ms=2.5, zorder=3)
         arrows = self.axes.quiver(
             *(wind.places[blows] / self.unit).T, *wind.winds[blows].T, color=INK, alpha=0.75, pivot="mid",
-            scale=strongest * wind.across * 1.25, width=0.0022 * 18 / wind.across, zorder=3,
+            scale=strongest * wind.across * 1.25, width=_SHAFT / self._longer_side, zorder=3,
         )  # fmt: skip
         if not wind.where:
             return
@@ -213,6 +214,11 @@ class MapPanel:
             arrows, 0.05, above, nice, f"{nice:g} m/s wind, {wind.where}", labelpos="E", coordinates="axes",
             fontproperties={"size": 9},
         )  # fmt: skip
+
+    @property
+    def _longer_side(self) -> float:
+        """The axes' longer side [inch]."""
+        return float(max(self.axes.bbox.width, self.axes.bbox.height) / self.axes.figure.dpi)
 
     def draw_by_speed(self, route: MapRoute) -> LineCollection:
         """A route coloured by its ground speeds."""

@@ -79,9 +79,9 @@ def _finding(letter: str, i: int, assessment: Assessment, finding: Finding) -> d
 
 
 def _json(value: Any) -> Markup:
-    """JSON that can stand inside a script element: nothing in it ends the element or begins a comment."""
+    """JSON that can stand inside a script element: nothing in it ends the element or a line, or begins a comment."""
     text = json_text(value, indent=None)
-    for character in "<>&":
+    for character in "<>&\u2028\u2029":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
 

@@ -21,6 +21,7 @@ from gcs_windplan.terrain import Extent
 _PIXELS = 500  # of relief along the longer side
 _ARROWS = 18  # along the longer side
 _SAMPLES = 1200  # of the ground under a route
+_SAME_PLACE = 0.1  # [m]
 _MARKERS = {"start": "^", "goal": "s"}
 
 
@@ -38,7 +39,7 @@ def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
     areas += [outline_of(prism, "keep-in") for prism in airspace.keep_in]
     places = [MapPlace(_name(s.field), s.east, s.north, _MARKERS.get(s.field, "D")) for s in request.sites]
     if len(plans) == 1:
-        places += [MapPlace(str(w.number), w.east, w.north) for w in plan.waypoints]
+        places += _stops(plan)
     view = MapView(
         _title(plans), extent, _ground(plan, extent), _wind(plan, extent), routes, areas=areas, solids=seen,
         places=places,
@@ -68,6 +69,16 @@ def _route(plan: Plan) -> MapRoute:
     line = np.array([(w.east, w.north) for w in plan.waypoints])
     name = f"{plan.choice}: {clock(plan.totals.seconds)} min"
     return MapRoute(name, line, np.array([leg.ground_speed for leg in plan.legs]))
+
+
+def _stops(plan: Plan) -> list[MapPlace]:
+    """The waypoints with their numbers, but for those at the sites, which have names."""
+    sites = np.array([(site.east, site.north) for site in plan.request.sites])
+    return [
+        MapPlace(str(w.number), w.east, w.north)
+        for w in plan.waypoints
+        if np.hypot(*(sites - (w.east, w.north)).T).min() > _SAME_PLACE
+    ]
 
 
 def _ground(plan: Plan, extent: Extent) -> Ground:

@@ -32,8 +32,8 @@ def drawn(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--max-gust", "10"), "--max-gust: no gusts are told by the wind"),
-        (("--max-gust", "10", "--wind", "8 m/s from 270"), "--max-gust: no gusts are told by the wind"),
+        (("--max-gust", "10"), "--max-gust: the wind has no gusts"),
+        (("--max-gust", "10", "--wind", "8 m/s from 270"), "--max-gust: the wind has no gusts"),
         (("--min-battery", "30 %"), "--min-battery: the battery is not known"),
         (("--wind", "8 m/s"), "--wind: '8 m/s' says no direction: write '8 m/s from 270'"),
     ],

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.paper.sampled import sampled_collisions
+from gcs_windplan.paper.sampled import SampledTest, sampled_collisions
+from gcs_windplan.scene.clearance import TOO_LOW, Clearance
 from gcs_windplan.terrain import Dem, Hill, MeshTerrain, hills
 from tests.oracles import terrain as naive
 
@@ -105,3 +108,13 @@ def test_a_step_or_tolerance_that_is_none_is_refused(step, tolerance):
 def test_what_are_no_triangles_are_refused():
     with pytest.raises(InputError, match="triangles"):
         sampled_collisions(np.zeros((3, 3)), *ACROSS, step=1.0)
+
+
+def test_as_a_test_of_clearance_it_steps_a_quarter_of_a_cell_and_pickles():
+    dem, test = ridge(), pickle.loads(pickle.dumps(SampledTest()))
+    assert test == SampledTest()
+    starts, ends = (np.asarray(legs, dtype=float) for legs in ACROSS)
+    expected = sampled_collisions(dem, starts, ends, step=dem.resolution / 4)
+    np.testing.assert_array_equal(test.too_low(dem, starts, ends), expected)
+    flags = Clearance(dem, 1000.0, test=test).breaches(starts, ends)
+    np.testing.assert_array_equal(flags & TOO_LOW != 0, expected)

@@ -47,6 +47,14 @@ def test_two_missions_lie_on_one_map() -> None:
     assert has_colour(drawn, (0xD5, 0x5E, 0x00))
 
 
+def test_obstacles_are_filled_as_on_a_plan_s_map() -> None:
+    mission = made.assessment()
+    house = replace(mission.outlines[0], kind="obstacle")
+    purple = (0x5B, 0x3A, 0x5E)
+    assert has_colour(draw_assessment_map([replace(mission, outlines=(house,))]), purple)
+    assert not has_colour(draw_assessment_map([mission]), purple)
+
+
 def test_routes_that_coincide_are_both_seen() -> None:
     drawn = pixels(draw_assessment_map([made.assessment("a"), made.assessment("b")])).astype(int)
     for colour in ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)):
