@@ -19,7 +19,7 @@ from gcs_windplan.paper.cases import CASES, make_rules, make_terrain, make_vehic
 from gcs_windplan.paper.flying import SHAPED, fly_case, sites_of
 from gcs_windplan.paper.graphs import lay_uniform
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID
-from gcs_windplan.planning.cost import COST_NAMES, CostChoice
+from gcs_windplan.planning.cost import COSTS, CostChoice
 from gcs_windplan.vehicle import best_range_airspeed, energy_per_metre, least_power_airspeed
 from tests.flight.test_duration import predicted_duration
 from tests.vehicle.test_power_rotors import ZENG
@@ -37,7 +37,7 @@ def test_the_mission_shown_is_the_mission_shipped():
 def test_the_figures_shown_are_the_programs():
     """Within what rounding on another processor may change: vertices settle a little elsewhere."""
     request = gw.read_mission(ROOT / "missions" / "jacksboro.yaml")
-    plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES if name != "energy"])
+    plans = gw.plan_routes(request, [CostChoice(name) for name in COSTS if name != "energy"])
     shown = re.search(r"^jacksboro, least time: (\d+) waypoints, ([\d.]+) km, (\d+):(\d\d) min", README, re.MULTILINE)
     assert shown is not None
     by_time = plans[-1]

@@ -18,7 +18,6 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError, Problem
-from gcs_windplan.flight import clock
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.request import MOST_TO_ORDER, Request
 from gcs_windplan.planning.route import PlanningProblem, cost_between, find_route, unshaped
@@ -205,6 +204,5 @@ def _saving(choice: CostChoice, chosen: float, given: float) -> str:
     if not np.isfinite(given):
         return "the given one cannot be flown"
     saved, share = given - chosen, f"{100 * (1 - chosen / given):.0f} %"
-    known = {"time": f"{clock(saved)} min", "distance": f"{saved / 1000:.2f} km", "energy": f"{saved / 3600:.0f} Wh"}
-    amount = known.get(choice.name)
+    amount = choice.leg_cost.words(saved)
     return f"saves {amount} ({share}) against the given one" if amount else f"saves {share} against the given one"

@@ -168,7 +168,8 @@ def solve(problem: PlanningProblem, choice: CostChoice, begin: float = 0.0) -> P
 
 def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float) -> Plan:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
-    if choice.name != "time" or not problem.request.free_airspeed or problem.request.airframe is None:
+    weighs_time = math.isinf(choice.leg_cost.value_of_time(math.inf))
+    if not weighs_time or not problem.request.free_airspeed or problem.request.airframe is None:
         return _planned(problem, choice, begin)
     power = problem.request.airframe.power
     quick, cost_index = quickest_within(
@@ -251,7 +252,7 @@ def _best_route(
     request = problem.request
     if not request.members:
         return find_route(problem, choice, begin, shaping, cost_index), None
-    ways = [problem, problem.in_the_mean()] if choice.name in ("time", "energy") else [problem]
+    ways = [problem, problem.in_the_mean()] if choice.leg_cost.of_air else [problem]
     candidates, error = [], None
     for way in ways:
         try:
@@ -265,7 +266,7 @@ def _best_route(
     if not candidates:
         assert error is not None
         raise error
-    measure = Spread.energy_at if choice.name == "energy" else Spread.at
+    measure = Spread.energy_at if choice.leg_cost.needs_power else Spread.at
     found, spread = min(candidates, key=lambda candidate: measure(candidate[1], request.robust))
     if not np.isfinite(spread.at(request.robust)):
         able = len(spread.seconds) - spread.unflyable

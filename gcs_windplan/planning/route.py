@@ -16,7 +16,7 @@ from gcs_windplan.errors import NoRouteError, Problem, RequestError
 from gcs_windplan.flight import fly
 from gcs_windplan.kernels.power import PowerGrid
 from gcs_windplan.planning.airspeeds import best_airspeeds
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.limits import strongest_along
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.search import WindGraph, find_open_path
@@ -88,11 +88,13 @@ def power_of(request: Request, graph: WindGraph, sites: FloatArray) -> PowerGrid
     """
     airframe = request.airframe
     if airframe is None:
-        if request.cost.name == "energy":
-            problem = Problem("energy asks for the vehicle's power: name its airframe in vehicle.airframe", "cost")
+        if request.cost.leg_cost.needs_power:
+            problem = Problem(
+                f"{request.cost} asks for the vehicle's power: name its airframe in vehicle.airframe", "cost"
+            )
             raise RequestError([request.locate(problem)])
         return None
-    if request.vehicle.speed_model == "paper" and (request.cost.name == "energy" or request.free_airspeed):
+    if request.vehicle.speed_model == "paper" and (request.cost.leg_cost.needs_power or request.free_airspeed):
         problem = Problem("the paper's speed model has no airspeed to draw power at: `triangle`", "vehicle.speed_model")
         raise RequestError([request.locate(problem)])
     heights = np.concatenate([graph.points[:, 2], sites[:, 2]])
@@ -145,23 +147,19 @@ def cost_between(
     goal: FloatArray,
     begin: float,
     cost_index: float = math.inf,
-) -> LegCost:
+) -> SectionCost:
     """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
     request = problem.request
     straight = float(np.linalg.norm(goal - start))
     edge = problem.graph.veil.edge_length
-    power = None
-    if choice.name == "energy":
-        power = problem.power
-    elif choice.name == "time" and problem.power is not None and math.isfinite(cost_index):
-        power = problem.power._replace(cost_index=cost_index)
-    return LegCost(
+    power = choice.leg_cost.power(problem.power, cost_index)
+    return SectionCost(
         choice, request.wind, problem.vehicle, edge, straight, begin, request.members, request.robust, power=power,
         waypoint_seconds=_CORNER if request.vehicle.hovers else 0.0, limits=problem.graph.limits,
     )  # fmt: skip
 
 
-def unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
+def unshaped(points: FloatArray, cost: SectionCost, rules: Clearance) -> FloatArray:
     """The graph's path as it is: a shaping that shapes nothing."""
     return points
 
@@ -193,9 +191,9 @@ def _airspeeds(
     if not request.free_airspeed or request.airframe is None or problem.power is None:
         return None
     slowest, fastest = float(problem.power.airspeeds[0]), float(problem.power.airspeeds[-1])
-    if choice.name == "time" and math.isinf(cost_index):
+    value = choice.leg_cost.value_of_time(cost_index)
+    if math.isinf(value):
         return np.full(len(points) - 1, fastest)
-    value = cost_index if choice.name == "time" else 0.0
     return best_airspeeds(
         points, request.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
     )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gcs_windplan as gw
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.planner import pose_problem
 from gcs_windplan.planning.request import Uniform
 from gcs_windplan.planning.route import find_route, unshaped
@@ -43,7 +43,7 @@ def test_threads_that_search_one_graph_find_what_each_finds_alone(members):
 
     def found(graph, begin: float) -> tuple[float, list]:
         ensemble = winds if members > 1 else ()
-        cost = LegCost(CostChoice("time"), winds[0], vehicle, veil.edge_length, 1.0, begin, ensemble)
+        cost = SectionCost(CostChoice("time"), winds[0], vehicle, veil.edge_length, 1.0, begin, ensemble)
         path = find_path(graph, cost, start, goal, begin)
         return path.cost, path.points.tolist()
 

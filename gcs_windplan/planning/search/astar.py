@@ -12,7 +12,7 @@ from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import search_csr, search_grid
 from gcs_windplan.kernels.edges import Setting, joins, remaining_at
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, breaches_around
 from gcs_windplan.scene import BREACHES
@@ -48,7 +48,9 @@ class GraphPath:
     deferred: int = 0
 
 
-def find_path(graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0) -> GraphPath:
+def find_path(
+    graph: WindGraph, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
+) -> GraphPath:
     """The path from start to goal, (3,) each, that begins at `clock` [s since departure].
 
     Raises `NoRouteError` that says what cuts the goal off.
@@ -84,7 +86,7 @@ class _Found:
 
 
 def _search_grid(
-    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
+    graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float
 ) -> _Found:
     """A* on the grid; the sites are joined to the nodes around them."""
     veil = graph.veil
@@ -125,8 +127,10 @@ def _search_grid(
     return _Found(points, min(direct, total), expanded, reached, outlasted, deferred)
 
 
-def _estimates(cost: LegCost, points: FloatArray, start: FloatArray, goal: FloatArray, setting: Setting) -> FloatArray:
-    """The cost's estimates; none (0) where the wind on the way to the goal is not known, or closed."""
+def _estimates(
+    cost: SectionCost, points: FloatArray, start: FloatArray, goal: FloatArray, setting: Setting
+) -> FloatArray:
+    """The cost's estimates; none (0) where the wind on the way to the goal is not known."""
     estimates = cost.estimates(points, start, goal, setting)
     return np.where(np.isnan(estimates), 0.0, estimates)
 
@@ -142,7 +146,7 @@ def _clear_nodes(graph: WindGraph, site: FloatArray) -> IntArray:
 
 
 def _search_prm(
-    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
+    graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float
 ) -> _Found:
     """A* on the roadmap, in which the sites are nodes."""
     veil = graph.veil
@@ -164,7 +168,7 @@ def no_route(
     reached: IntArray,
     start: FloatArray,
     goal: FloatArray,
-    cost: LegCost,
+    cost: SectionCost,
     outlasted: bool,
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
@@ -200,7 +204,7 @@ def no_route(
     )
 
 
-def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: LegCost) -> BoolArray:
+def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: SectionCost) -> BoolArray:
     """Which nodes (-1: the goal) limits of wind close at some time, in more members than may be left out."""
     if not graph.limits:
         return np.zeros(len(nodes), dtype=np.bool_)
