@@ -38,6 +38,7 @@ from gcs_windplan.planning.sites import (
 )
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, lay_grid, lay_prm
 from gcs_windplan.planning.waiting import later_departure_note, next_feasible_departure
+from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
 from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Extent
 
@@ -99,19 +100,23 @@ class Plan:
         )
 
 
-def plan_route(request: Request) -> Plan:
+def plan_route(
+    request: Request, *, progress: ProgressCallback | None = None, cancel: CancelToken | None = None
+) -> Plan:
     """Plan the request's route by its own cost.
+
+    `progress` is called between the steps, and `cancel` is looked at: then `CancelledError` is raised.
 
     Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
     `TerrainError` where the data do not cover the place, `NoRouteError` where no route exists, and `BatteryError` where
     the best one breaks the battery's reserve, or leads to where the vehicle cannot come home from.
     """
-    problem = pose_problem(request)
-    plan = solve(problem, request.cost)
+    problem = pose_problem(request, progress=progress, cancel=cancel)
+    plan = solve(problem, request.cost, progress=progress, cancel=cancel)
     try:
         refuse_unsafe(plan)
     except BatteryError as error:
-        raise BatteryError(f"{error}{_lower_energy_hint(problem)}") from error
+        raise BatteryError(f"{error}{_lower_energy_hint(problem, Tracker(progress, cancel))}") from error
     return plan
 
 
@@ -123,14 +128,24 @@ def refuse_unsafe(plan: Plan) -> None:
         check_return(plan.ways_home, plan.battery, plan.flight)
 
 
-def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
+def plan_routes(
+    request: Request,
+    choices: Sequence[CostChoice],
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> list[Plan]:
     """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
-    problem = pose_problem(request)
-    return [solve(problem, choice) for choice in choices]
+    problem = pose_problem(request, progress=progress, cancel=cancel)
+    return [solve(problem, choice, progress=progress, cancel=cancel) for choice in choices]
 
 
-def pose_problem(request: Request) -> PlanningProblem:
-    """Stand the sites, lay the veil, and let the wind blow on it. Raises as `plan_route` does."""
+def pose_problem(
+    request: Request, *, progress: ProgressCallback | None = None, cancel: CancelToken | None = None
+) -> PlanningProblem:
+    """Place the sites, lay the graph, and sample the wind at its nodes. Raises as `plan_route` does."""
+    tracker = Tracker(progress, cancel)
+    tracker.at("placing the sites")
     rules = Clearance(
         request.terrain,
         request.clearance,
@@ -148,7 +163,8 @@ def pose_problem(request: Request) -> PlanningProblem:
     begin = time.perf_counter()
     area = choose_area(request, sites)
     rules = replace(rules, area=area)
-    veil = _lay_veil(request, rules, layers, sites, area)
+    veil = _lay_veil(request, rules, layers, sites, area, tracker)
+    tracker.at("sampling the wind")
     graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
     mean = replace(request, members=())
     mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
@@ -156,29 +172,37 @@ def pose_problem(request: Request) -> PlanningProblem:
     return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
 
 
-def solve(problem: PlanningProblem, choice: CostChoice, begin: float = 0.0) -> Plan:
+def solve(
+    problem: PlanningProblem,
+    choice: CostChoice,
+    begin: float = 0.0,
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> Plan:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
     """
-    ordered, notes = optimise_order(problem, choice, begin)
-    plan = _quickest(ordered, choice, begin)
+    tracker = Tracker(progress, cancel)
+    ordered, notes = optimise_order(problem, choice, begin, tracker)
+    plan = _quickest(ordered, choice, begin, tracker)
     return replace(plan, notes=(*notes, *plan.notes))
 
 
-def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float) -> Plan:
+def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> Plan:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
     weighs_time = math.isinf(choice.leg_cost.value_of_time(math.inf))
     if not weighs_time or not problem.request.free_airspeed or problem.request.airframe is None:
-        return _planned(problem, choice, begin)
+        return _planned(problem, choice, begin, tracker)
     power = problem.request.airframe.power
     quick, cost_index = quickest_within(
-        lambda cost_index: _planned(problem, choice, begin, cost_index, shape_quickly),
+        lambda cost_index: _planned(problem, choice, begin, tracker, cost_index, shape_quickly),
         lambda plan: math.inf if plan.battery is None else plan.battery.missing,
         0.0,
         float(power.watts(problem.request.vehicle.airspeed, 0.0)),
     )
-    plan = _planned(problem, choice, begin, cost_index)
+    plan = _planned(problem, choice, begin, tracker, cost_index)
     fits = plan.battery is not None and plan.battery.missing == 0
     return plan if fits or cost_index == 0.0 else quick
 
@@ -187,6 +211,7 @@ def _planned(
     problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
+    tracker: Tracker,
     cost_index: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
 ) -> Plan:
@@ -197,10 +222,11 @@ def _planned(
     """
     request = problem.request
     try:
-        found, spread = _best_route(problem, choice, begin, cost_index, shaping)
+        found, spread = _best_route(problem, choice, begin, cost_index, shaping, tracker)
     except NoRouteError as error:
         raise NoRouteError(
-            f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem))}", error.cuts
+            f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem, tracker))}",
+            error.cuts,
         ) from error
     flight = fly(
         found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
@@ -212,12 +238,12 @@ def _planned(
     )  # fmt: skip
     notes = _notes(request, problem.graph.winds_between(begin, found.arrival))
     if found.deferred:
-        notes += later_departure_note(found.arrival - begin, begin, partial(_lasting, problem))
+        notes += later_departure_note(found.arrival - begin, begin, partial(_lasting, problem, tracker))
     en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
     battery = battery_use(request, flight, en_route, _home_again(problem, flight, begin))
     ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
-        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin)
+        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin, tracker)
     if problem.graph.limits:
         strongest = strongest_along(request, found.points, begin, found.airspeeds)
         strongest.check_limits(request.limits, request.robust)
@@ -230,11 +256,11 @@ def _home_again(problem: PlanningProblem, flight: Flight, begin: float) -> float
     return home_from_the_end(problem, flight, begin) if returns else 0.0
 
 
-def _lower_energy_hint(problem: PlanningProblem) -> str:
+def _lower_energy_hint(problem: PlanningProblem, tracker: Tracker) -> str:
     """Whether the route of least energy would do, in words."""
     choice = CostChoice("energy")
     try:
-        plan = solve(problem, choice)
+        plan = solve(problem, choice, progress=tracker.progress, cancel=tracker.cancel)
         refuse_unsafe(plan)
     except (BatteryError, NoRouteError):
         return ""
@@ -246,17 +272,22 @@ def _lower_energy_hint(problem: PlanningProblem) -> str:
 
 
 def _best_route(
-    problem: PlanningProblem, choice: CostChoice, begin: float, cost_index: float, shaping: Callable[..., FloatArray]
+    problem: PlanningProblem,
+    choice: CostChoice,
+    begin: float,
+    cost_index: float,
+    shaping: Callable[..., FloatArray],
+    tracker: Tracker,
 ) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
     request = problem.request
     if not request.members:
-        return find_route(problem, choice, begin, shaping, cost_index), None
+        return find_route(problem, choice, begin, shaping, cost_index, tracker), None
     ways = [problem, problem.in_the_mean()] if choice.leg_cost.of_air else [problem]
     candidates, error = [], None
     for way in ways:
         try:
-            found = find_route(way, choice, begin, shaping, cost_index)
+            found = find_route(way, choice, begin, shaping, cost_index, tracker)
         except NoRouteError as no_route:
             error = error or no_route
             continue
@@ -279,14 +310,15 @@ def _best_route(
 
 
 def _lay_veil(
-    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent
+    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent, tracker: Tracker
 ) -> GridVeil | PrmVeil:
     """The veil that the request asks for."""
     check_graph_size(request, area, layers)
     graph = request.graph
     if isinstance(graph, Roadmap):
+        tracker.at("laying the graph")
         return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
-    return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
+    return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours, tracker)
 
 
 def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
@@ -309,10 +341,10 @@ def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _lasting(problem: PlanningProblem, begin: float) -> float:
+def _lasting(problem: PlanningProblem, tracker: Tracker, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        found = find_route(problem, CostChoice("time"), begin, unshaped)
+        found = find_route(problem, CostChoice("time"), begin, unshaped, tracker=tracker)
     except (NoRouteError, WindError):
         return float("inf")
     spread = spread_of(problem.request, found.points, begin, found.airspeeds)

@@ -21,6 +21,7 @@ from gcs_windplan.planning.limits import strongest_along
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.search import WindGraph, find_open_path
 from gcs_windplan.planning.shaping import shape
+from gcs_windplan.progress import UNTRACKED, Tracker
 from gcs_windplan.scene import Clearance
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
@@ -112,15 +113,19 @@ def find_route(
     begin: float,
     shaping: Callable[..., FloatArray] = shape,
     cost_index: float = math.inf,
+    tracker: Tracker = UNTRACKED,
 ) -> FoundRoute:
     """The route by a cost that begins at `begin` [s since departure]. Raises `NoRouteError`.
 
     By `time` a finite `cost_index` [W] weighs seconds against energy; all other costs ignore it.
     """
     found = FoundRoute(problem.sites[:1], begin)
-    for start, goal in pairwise(problem.sites):
+    sections = len(problem.sites) - 1
+    for section, (start, goal) in enumerate(pairwise(problem.sites)):
+        tracker.at(f"searching by {choice.name}", section, sections)
         cost = cost_between(problem, choice, start, goal, found.arrival, cost_index)
         path = find_open_path(problem.graph, cost, start, goal, found.arrival)
+        tracker.at(f"shaping the route by {choice.name}", section, sections)
         since = time.perf_counter()
         shaped = shaping(path.points, cost, problem.rules)
         found.shaping_seconds += time.perf_counter() - since
