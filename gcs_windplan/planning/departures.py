@@ -17,10 +17,10 @@ from gcs_windplan.planning.cost import CostChoice, rank_of
 from gcs_windplan.planning.ensemble import Spread, spread_of
 from gcs_windplan.planning.limits import Strongest, strongest_along
 from gcs_windplan.planning.order import optimise_order
-from gcs_windplan.planning.planner import pose_problem
+from gcs_windplan.planning.problem import PlanningProblem, pose_problem
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.returns import home_from_the_end
-from gcs_windplan.planning.route import PlanningProblem, find_route
+from gcs_windplan.planning.route import find_route
 from gcs_windplan.planning.shaping import shape_quickly
 from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
 
@@ -123,7 +123,7 @@ class _Job:
         since, request = time.process_time(), self.request
         try:
             problem = optimise_order(self.problem, self.choice, begin)[0]
-            found = find_route(problem, self.choice, begin, shape_quickly)
+            found = find_route(problem, self.choice, begin, shaping=shape_quickly)
             flight = fly(
                 found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
                 found.airspeeds,

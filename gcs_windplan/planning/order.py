@@ -19,13 +19,13 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError, Problem
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.request import MOST_TO_ORDER, Request
-from gcs_windplan.planning.route import PlanningProblem, cost_between, find_route, unshaped
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.request import Request
+from gcs_windplan.planning.route import cost_between, find_route, unshaped
 from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.progress import UNTRACKED, Tracker
 
 _MOMENTS: Final = (0.5, 1.0)  # of the flight in the order that is best at its begin: when changing costs are looked at
-_SAME: Final = 0.01  # [m]
 _WORTH: Final = 1e-6  # of the cost, that another order must gain over the given one
 
 
@@ -111,23 +111,6 @@ def optimise_order(
     return _reordered(problem, order), (f"order of the vias: {numbers}; {_saving(choice, chosen, given)}",)
 
 
-def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
-    """What is wrong with vias that are to be put in order: more than 12, or two places (n, 3) that are one."""
-    if request.order == "given":
-        return []
-    if len(request.via) > MOST_TO_ORDER:
-        text = f"{len(request.via)} vias are more than the {MOST_TO_ORDER} that can be put in order: give the order"
-        return [Problem(text, "order")]
-    problems = []
-    for i in range(1, len(sites) - 1):
-        apart = np.linalg.norm(sites - sites[i], axis=1)
-        same = next((j for j in (*range(i), len(sites) - 1) if apart[j] < _SAME), None)
-        if same is not None:
-            text = f"is the same place as {request.sites[same].field}: leave one of the two out"
-            problems.append(Problem(text, request.sites[i].field))
-    return problems
-
-
 def _best_order(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> tuple[int, ...]:
     """The best order of the vias by costs on the graph. Raises `NoRouteError`."""
     costs, errors = _costs(problem, choice, np.array([begin]), tracker)
@@ -190,7 +173,7 @@ def _no_order(request: Request, costs: Costs, errors: dict[tuple[int, int], NoRo
 def _cost_in(problem: PlanningProblem, choice: CostChoice, begin: float, order: tuple[int, ...]) -> float:
     """What the graph's route in an order costs, infinite where it cannot be flown."""
     try:
-        return find_route(_reordered(problem, order), choice, begin, unshaped).cost
+        return find_route(_reordered(problem, order), choice, begin, shaping=unshaped).cost
     except NoRouteError:
         return float("inf")
 

@@ -6,7 +6,6 @@ request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shapi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,33 +13,22 @@ from functools import partial
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import BatteryError, NoRouteError, RequestError, WindError
+from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
 from gcs_windplan.planning.battery import BatteryUse, battery_use, check_reserve
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limits_broken_at_sites, strongest_along, wind_limits
-from gcs_windplan.planning.order import optimise_order, too_many_or_equal
-from gcs_windplan.planning.request import Request, Roadmap
+from gcs_windplan.planning.limits import Strongest, strongest_along
+from gcs_windplan.planning.order import optimise_order
+from gcs_windplan.planning.problem import PlanningProblem, pose_problem
+from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.returns import WaysHome, check_return, home_from_the_end, ways_home
-from gcs_windplan.planning.route import FoundRoute, PlanningProblem, find_route, power_of, unshaped
-from gcs_windplan.planning.search import NodeWinds, sample_wind
+from gcs_windplan.planning.route import FoundRoute, find_route, unshaped
+from gcs_windplan.planning.search import NodeWinds
 from gcs_windplan.planning.shaping import shape, shape_quickly
-from gcs_windplan.planning.sites import (
-    check_graph_size,
-    choose_area,
-    choose_layers,
-    choose_nodes,
-    choose_spacing,
-    place_sites,
-    windless_sites,
-)
-from gcs_windplan.planning.veil import GridVeil, PrmVeil, lay_grid, lay_prm
 from gcs_windplan.planning.waiting import later_departure_note, next_feasible_departure
 from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
-from gcs_windplan.scene import Clearance
-from gcs_windplan.terrain import Extent
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,38 +128,6 @@ def plan_routes(
     return [solve(problem, choice, progress=progress, cancel=cancel) for choice in choices]
 
 
-def pose_problem(
-    request: Request, *, progress: ProgressCallback | None = None, cancel: CancelToken | None = None
-) -> PlanningProblem:
-    """Place the sites, lay the graph, and sample the wind at its nodes. Raises as `plan_route` does."""
-    tracker = Tracker(progress, cancel)
-    tracker.at("placing the sites")
-    rules = Clearance(
-        request.terrain,
-        request.clearance,
-        np.inf if request.max_height is None else request.max_height,
-        request.obstacles,
-        request.airspace,
-        request.collision_test,
-    )
-    layers = choose_layers(request)
-    sites, problems = place_sites(request, rules, layers)
-    problems = problems or windless_sites(request, sites) or limits_broken_at_sites(request, sites)
-    problems = problems or too_many_or_equal(request, sites)
-    if problems:
-        raise RequestError([request.locate(problem) for problem in problems])
-    begin = time.perf_counter()
-    area = choose_area(request, sites)
-    rules = replace(rules, area=area)
-    veil = _lay_veil(request, rules, layers, sites, area, tracker)
-    tracker.at("sampling the wind")
-    graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
-    mean = replace(request, members=())
-    mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
-    seconds = time.perf_counter() - begin
-    return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
-
-
 def solve(
     problem: PlanningProblem,
     choice: CostChoice,
@@ -197,12 +153,12 @@ def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float, tracke
         return _planned(problem, choice, begin, tracker)
     power = problem.request.airframe.power
     quick, cost_index = quickest_within(
-        lambda cost_index: _planned(problem, choice, begin, tracker, cost_index, shape_quickly),
+        lambda cost_index: _planned(problem, choice, begin, tracker, cost_index=cost_index, shaping=shape_quickly),
         lambda plan: math.inf if plan.battery is None else plan.battery.missing,
         0.0,
         float(power.watts(problem.request.vehicle.airspeed, 0.0)),
     )
-    plan = _planned(problem, choice, begin, tracker, cost_index)
+    plan = _planned(problem, choice, begin, tracker, cost_index=cost_index)
     fits = plan.battery is not None and plan.battery.missing == 0
     return plan if fits or cost_index == 0.0 else quick
 
@@ -212,6 +168,7 @@ def _planned(
     choice: CostChoice,
     begin: float,
     tracker: Tracker,
+    *,
     cost_index: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
 ) -> Plan:
@@ -222,7 +179,7 @@ def _planned(
     """
     request = problem.request
     try:
-        found, spread = _best_route(problem, choice, begin, cost_index, shaping, tracker)
+        found, spread = _best_route(problem, choice, begin, tracker, cost_index=cost_index, shaping=shaping)
     except NoRouteError as error:
         raise NoRouteError(
             f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem, tracker))}",
@@ -243,7 +200,7 @@ def _planned(
     battery = battery_use(request, flight, en_route, _home_again(problem, flight, begin))
     ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
-        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin, tracker)
+        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin, tracker=tracker)
     if problem.graph.limits:
         strongest = strongest_along(request, found.points, begin, found.airspeeds)
         strongest.check_limits(request.limits, request.robust)
@@ -275,19 +232,20 @@ def _best_route(
     problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
+    tracker: Tracker,
+    *,
     cost_index: float,
     shaping: Callable[..., FloatArray],
-    tracker: Tracker,
 ) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
     request = problem.request
     if not request.members:
-        return find_route(problem, choice, begin, shaping, cost_index, tracker), None
+        return find_route(problem, choice, begin, shaping=shaping, cost_index=cost_index, tracker=tracker), None
     ways = [problem, problem.in_the_mean()] if choice.leg_cost.of_air else [problem]
     candidates, error = [], None
     for way in ways:
         try:
-            found = find_route(way, choice, begin, shaping, cost_index, tracker)
+            found = find_route(way, choice, begin, shaping=shaping, cost_index=cost_index, tracker=tracker)
         except NoRouteError as no_route:
             error = error or no_route
             continue
@@ -307,18 +265,6 @@ def _best_route(
             {"wind": spread.unflyable},
         )
     return found, spread
-
-
-def _lay_veil(
-    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent, tracker: Tracker
-) -> GridVeil | PrmVeil:
-    """The veil that the request asks for."""
-    check_graph_size(request, area, layers)
-    graph = request.graph
-    if isinstance(graph, Roadmap):
-        tracker.at("laying the graph")
-        return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
-    return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours, tracker)
 
 
 def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
@@ -344,7 +290,7 @@ def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
 def _lasting(problem: PlanningProblem, tracker: Tracker, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        found = find_route(problem, CostChoice("time"), begin, unshaped, tracker=tracker)
+        found = find_route(problem, CostChoice("time"), begin, shaping=unshaped, tracker=tracker)
     except (NoRouteError, WindError):
         return float("inf")
     spread = spread_of(problem.request, found.points, begin, found.airspeeds)

@@ -13,7 +13,8 @@ from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, clock
 from gcs_windplan.planning.battery import BatteryUse
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.route import PlanningProblem, cost_between
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.route import cost_between
 from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.planning.sites import choose_layers, site_points
 from gcs_windplan.progress import UNTRACKED, Tracker
@@ -57,6 +58,7 @@ def ways_home(
     use: BatteryUse,
     capacity: float,
     begin: float = 0.0,
+    *,
     tracker: Tracker = UNTRACKED,
 ) -> WaysHome:
     """The ways home from each waypoint of a flight that begins at `begin` [s since departure].

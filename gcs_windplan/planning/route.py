@@ -5,62 +5,28 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, NoReturn
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import NoRouteError, Problem, RequestError
+from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight import fly
-from gcs_windplan.kernels.power import PowerGrid
 from gcs_windplan.planning.airspeeds import best_airspeeds
 from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.limits import strongest_along
-from gcs_windplan.planning.request import Request
-from gcs_windplan.planning.search import WindGraph, find_open_path
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.planning.shaping import shape
 from gcs_windplan.progress import UNTRACKED, Tracker
 from gcs_windplan.scene import Clearance
-from gcs_windplan.vehicle import Vehicle
-from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
 
 #: [s] what a multicopter loses at a slight corner: over rough ground ArduCopter was quickest, by its own law, when
 #: waypoints that gain less were left out (0.5 and 1 s were alike, 0 and 2 s half a percent and more slower).
 _CORNER: Final = 0.7
 _SHORT_LEG: Final = 1.0  # [m] legs so short are none: half of ArduCopter's default waypoint radius
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlanningProblem:
-    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
-
-    `power` is there
-    where the airframe is known, `mean_graph` with the members' mean where there is an ensemble. Threads may share it.
-    """
-
-    request: Request
-    rules: Clearance
-    sites: FloatArray
-    graph: WindGraph
-    seconds: float
-    power: PowerGrid | None = None
-    mean_graph: WindGraph | None = None
-
-    def in_the_mean(self) -> PlanningProblem:
-        """The same without the members of an ensemble: only their mean blows."""
-        if self.mean_graph is None:
-            return self
-        return replace(self, request=replace(self.request, members=()), graph=self.mean_graph, mean_graph=None)
-
-    @property
-    def vehicle(self) -> Vehicle:
-        """The vehicle, at the largest airspeed if it is free to choose: so fast it goes where time is all."""
-        request = self.request
-        if not request.free_airspeed or request.airframe is None:
-            return request.vehicle
-        return replace(request.vehicle, airspeed=request.airframe.maximum_airspeed)
 
 
 @dataclass(slots=True, eq=False)
@@ -82,35 +48,11 @@ class FoundRoute:
     airspeeds: FloatArray | None = None
 
 
-def power_of(request: Request, graph: WindGraph, sites: FloatArray) -> PowerGrid | None:
-    """The vehicle's power between the lowest and the highest place of the veil; None where no airframe tells it.
-
-    Raises `RequestError` where a cost or free airspeeds ask for it.
-    """
-    airframe = request.airframe
-    if airframe is None:
-        if request.cost.leg_cost.needs_power:
-            problem = Problem(
-                f"{request.cost} asks for the vehicle's power: name its airframe in vehicle.airframe", "cost"
-            )
-            raise RequestError([request.locate(problem)])
-        return None
-    if request.vehicle.speed_model == "paper" and (request.cost.leg_cost.needs_power or request.free_airspeed):
-        problem = Problem("the paper's speed model has no airspeed to draw power at: `triangle`", "vehicle.speed_model")
-        raise RequestError([request.locate(problem)])
-    heights = np.concatenate([graph.points[:, 2], sites[:, 2]])
-    between = float(np.nanmin(heights)), float(np.nanmax(heights))
-    if request.free_airspeed:
-        airspeeds = airspeed_choices(airframe, sum(between) / 2)
-    else:
-        airspeeds = np.array([request.vehicle.airspeed])
-    return tabulate(airframe.power, request.vehicle, airspeeds, between)
-
-
 def find_route(
     problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
+    *,
     shaping: Callable[..., FloatArray] = shape,
     cost_index: float = math.inf,
     tracker: Tracker = UNTRACKED,
@@ -123,7 +65,7 @@ def find_route(
     sections = len(problem.sites) - 1
     for section, (start, goal) in enumerate(pairwise(problem.sites)):
         tracker.at(f"searching by {choice.name}", section, sections)
-        cost = cost_between(problem, choice, start, goal, found.arrival, cost_index)
+        cost = cost_between(problem, choice, start, goal, found.arrival, cost_index=cost_index)
         path = find_open_path(problem.graph, cost, start, goal, found.arrival)
         tracker.at(f"shaping the route by {choice.name}", section, sections)
         since = time.perf_counter()
@@ -151,6 +93,7 @@ def cost_between(
     start: FloatArray,
     goal: FloatArray,
     begin: float,
+    *,
     cost_index: float = math.inf,
 ) -> SectionCost:
     """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
@@ -200,7 +143,13 @@ def _airspeeds(
     if math.isinf(value):
         return np.full(len(points) - 1, fastest)
     return best_airspeeds(
-        points, request.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
+        points,
+        request.wind,
+        request.vehicle,
+        request.airframe.power,
+        (slowest, fastest),
+        begin=begin,
+        cost_index=value,
     )
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import gcs_windplan as gw
 from gcs_windplan.planning.cost import CostChoice, SectionCost
-from gcs_windplan.planning.planner import pose_problem
+from gcs_windplan.planning.problem import pose_problem
 from gcs_windplan.planning.request import Uniform
 from gcs_windplan.planning.route import find_route, unshaped
 from gcs_windplan.planning.search import find_path, sample_wind
@@ -61,7 +61,7 @@ def test_threads_that_route_one_problem_find_what_each_finds_alone():
     begins = [2700.0 * k for k in range(4)]
 
     def found(problem, begin: float) -> tuple[float, list]:
-        route = find_route(problem, CostChoice("time"), begin, unshaped)
+        route = find_route(problem, CostChoice("time"), begin, shaping=unshaped)
         return route.arrival, route.points.tolist()
 
     alone = [found(pose_problem(asked), begin) for begin in begins]

@@ -169,9 +169,11 @@ class SectionCost:
 
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (..., 3), at all times, in all members."""
+        if winds.shape == (len(winds), 4):  # steady, with limits: nobody flies in stronger winds
+            winds = winds[~(winds[:, 3] > 1.0)]
         winds = winds.reshape(-1, winds.shape[-1])
         centre, radius = enclosing_ball(winds)
-        if radius > self.limits.wind:  # of stronger wind nobody makes use
+        if radius > self.limits.wind:  # nor where it changes, between two of its times
             centre, radius = np.zeros(2), self.limits.wind
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))

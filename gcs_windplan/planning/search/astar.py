@@ -55,12 +55,12 @@ def find_path(
 
     Raises `NoRouteError` that says what cuts the goal off.
     """
-    begin = time.perf_counter()
+    begin, ends = time.perf_counter(), np.stack([start, goal])
     find = _search_grid if isinstance(graph.veil, GridVeil) else _search_prm
     horizon = _LONG * float(np.linalg.norm(goal - start)) / cost.vehicle.airspeed
     while True:
         winds = graph.winds_between(clock, clock + horizon)
-        found = find(graph, winds, cost, start, goal, clock)
+        found = find(graph, winds, cost, ends, clock)
         complete = len(found.points) > 0 and found.cost <= cost.least_in(horizon)
         reaches = winds.times is None or clock + horizon >= graph.ends
         if complete or reaches or found.outlasted == 0:
@@ -69,7 +69,7 @@ def find_path(
     seconds = time.perf_counter() - begin
     if len(found.points) == 0:
         reached = np.flatnonzero(np.isfinite(found.reached))
-        raise no_route(graph, winds, reached, start, goal, cost, found.outlasted > 0)
+        raise no_route(graph, winds, reached, ends, cost, outlasted=found.outlasted > 0)
     return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
@@ -85,13 +85,11 @@ class _Found:
     deferred: int
 
 
-def _search_grid(
-    graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float
-) -> _Found:
+def _search_grid(graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, ends: FloatArray, clock: float) -> _Found:
     """A* on the grid; the sites are joined to the nodes around them."""
     veil = graph.veil
     assert isinstance(veil, GridVeil)
-    ends = np.stack([start, goal])
+    start, goal = ends
     blows, times = node_winds.winds, node_winds.times
     air = graph.winds_at(ends, times)
     site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
@@ -145,18 +143,17 @@ def _clear_nodes(graph: WindGraph, site: FloatArray) -> IntArray:
     return clear
 
 
-def _search_prm(
-    graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float
-) -> _Found:
+def _search_prm(graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, ends: FloatArray, clock: float) -> _Found:
     """A* on the roadmap, in which the sites are nodes."""
     veil = graph.veil
     assert isinstance(veil, PrmVeil)
-    ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
+    start, goal = ends
+    first, last = (int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in ends)
     tally = np.zeros(2, dtype=np.int64)
     setting = cost.setting(goal, node_winds.winds)
     nodes, total, expanded, reached = search_csr(
         veil.first, veil.neighbours, veil.points, node_winds.winds, _estimates(cost, veil.points, start, goal, setting),
-        cost.performance(), setting, cost.power, ends[0], ends[1],
+        cost.performance(), setting, cost.power, first, last,
         node_winds.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
     return _Found(veil.points[nodes], total, expanded, reached, int(tally[0]), int(tally[1]))
@@ -166,12 +163,13 @@ def no_route(
     graph: WindGraph,
     winds: NodeWinds,
     reached: IntArray,
-    start: FloatArray,
-    goal: FloatArray,
+    ends: FloatArray,
     cost: SectionCost,
+    *,
     outlasted: bool,
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
+    start, goal = ends
     veil = graph.veil
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)

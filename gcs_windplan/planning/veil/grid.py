@@ -110,6 +110,7 @@ def lay_grid(
     spacing: float,
     layers: Sequence[float],
     neighbours: int = 16,
+    *,
     tracker: Tracker = UNTRACKED,
 ) -> GridVeil:
     """Lay a uniform veil over an area, each layer at its height above ground [m], and judge every leg once."""
