@@ -13,12 +13,12 @@ def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = No
 
     from gcs_windplan.cli.plan import report, write
     from gcs_windplan.cli.tables import print_comparison
-    from gcs_windplan.planning.cost import COST_NAMES, CostChoice
+    from gcs_windplan.planning.cost import COSTS, CostChoice
     from gcs_windplan.planning.planner import plan_routes
     from gcs_windplan.report import draw_map
 
     hybrid = request.cost if request.cost.name == "hybrid" else CostChoice("hybrid")
-    names = [name for name in COST_NAMES if name != "energy" or request.airframe is not None]
+    names = [name for name, cost in COSTS.items() if request.airframe is not None or not cost.needs_power]
     choices = [hybrid if name == "hybrid" else CostChoice(name) for name in names]
     plans = plan_routes(request, choices)
     picture = draw_map(plans)

@@ -39,7 +39,7 @@ def plan(
     from gcs_windplan.planning.planner import plan_route, plan_routes
 
     if cost is not None and cost != request.cost.name:
-        request = replace(request, cost=CostChoice(cost))  # type: ignore[arg-type]
+        request = replace(request, cost=CostChoice(cost))
     if speed_changes is not None:
         request = replace(request, export=replace(request.export, speed_changes=speed_changes))
     planned = plan_routes(request, [request.cost])[0] if force else plan_route(request)

@@ -146,7 +146,7 @@ def fly_legs(
     """
 
     def measure(when: FloatArray | None) -> tuple[LegIntegrals, FloatArray]:
-        parts = integrate(wind, vehicle, points[:-1], points[1:], when, airspeeds)
+        parts = integrate(wind, vehicle, points[:-1], points[1:], when, airspeeds=airspeeds)
         return parts, parts.seconds
 
     return clocked(measure, still_air_times(points, vehicle, begin), len(wind.times) > 1)

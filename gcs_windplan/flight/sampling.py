@@ -62,6 +62,7 @@ def integrate(
     starts: FloatArray,
     ends: FloatArray,
     when: FloatArray | None = None,
+    *,
     airspeeds: FloatArray | None = None,
 ) -> LegIntegrals:
     """Integrate along straight legs (n, 3), each flown at the vehicle's airspeed or at its own of `airspeeds` (n,).

@@ -12,7 +12,7 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.flight.sampling import integrate
 from gcs_windplan.paper.cases import PaperCase, lift_to_veil
 from gcs_windplan.paper.published import COSTS, TIME
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.search import WindGraph, find_path, sample_wind
 from gcs_windplan.planning.shaping import shape
 from gcs_windplan.planning.veil import PrmVeil
@@ -53,14 +53,14 @@ def sites_of(rules: Clearance, cases: Sequence[PaperCase]) -> FloatArray:
 def find_route(graph: WindGraph, choice: CostChoice, case: PaperCase, vehicle: Vehicle) -> Route:
     """The graph's path of least cost, as the search returns it: the paper shapes nothing."""
     start, goal = lift_to_veil(graph.veil.clearance, np.array([case.start, case.goal]))
-    cost = LegCost(choice, case.wind, vehicle, graph.veil.edge_length, float(np.linalg.norm(goal - start)))
+    cost = SectionCost(choice, case.wind, vehicle, graph.veil.edge_length, float(np.linalg.norm(goal - start)))
     path = find_path(graph, cost, start, goal)
     return Route(path.points, seconds_of(path.points, case.wind, vehicle), path.expanded, path.seconds)
 
 
 def shape_route(route: Route, rules: Clearance, wind: WindField, vehicle: Vehicle) -> Route:
     """A route with its waypoints moved to where the wind wants them; never slower."""
-    cost = LegCost(TIME, wind, vehicle, 1.0, 1.0)
+    cost = SectionCost(TIME, wind, vehicle, 1.0, 1.0)
     points = shape(route.points, cost, rules)
     return Route(points, seconds_of(points, wind, vehicle), route.expanded, route.search_seconds)
 

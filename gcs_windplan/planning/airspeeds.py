@@ -27,6 +27,7 @@ def best_airspeeds(
     vehicle: Vehicle,
     power: PowerModel,
     between: tuple[float, float],
+    *,
     begin: float = 0.0,
     cost_index: float = 0.0,
 ) -> FloatArray:

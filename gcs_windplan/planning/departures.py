@@ -17,11 +17,12 @@ from gcs_windplan.planning.cost import CostChoice, rank_of
 from gcs_windplan.planning.ensemble import Spread, spread_of
 from gcs_windplan.planning.limits import Strongest, strongest_along
 from gcs_windplan.planning.order import optimise_order
-from gcs_windplan.planning.planner import pose_problem
+from gcs_windplan.planning.problem import PlanningProblem, pose_problem
 from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.returns import home_from_the_end
-from gcs_windplan.planning.route import PlanningProblem, find_route
+from gcs_windplan.planning.route import find_route
 from gcs_windplan.planning.shaping import shape_quickly
+from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
 
 _NEAR_THE_END = 2.0  # durations of the flight
 
@@ -67,15 +68,23 @@ def moments_between(first: datetime, last: datetime, every: timedelta) -> list[d
 
 
 def sweep(
-    request: Request, moments: Sequence[datetime], choice: CostChoice | None = None, cores: int | None = None
+    request: Request,
+    moments: Sequence[datetime],
+    choice: CostChoice | None = None,
+    cores: int | None = None,
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
 ) -> Iterator[Departure]:
     """The best route at each departure, in the order of the moments.
 
     The forecast has to reach over all of them. The sites stand, the veil is laid and the wind is sampled once; the
     routes are found on `cores` cores (all, if not said). Over an ensemble each route is planned in the members' mean
-    and flown in all of them. Raises as `plan_route` does for what is wrong at every departure.
+    and flown in all of them. `progress` is called, and `cancel` looked at, between the departures. Raises as
+    `plan_route` does for what is wrong at every departure.
     """
-    problem = pose_problem(replace(request, members=())) if request.members else pose_problem(request)
+    tracker = Tracker(progress, cancel)
+    problem = pose_problem(replace(request, members=()), progress=progress, cancel=cancel)
     if request.departure is not None and len(moments):
         begins = [(moment - request.departure).total_seconds() for moment in moments]
     else:
@@ -83,13 +92,21 @@ def sweep(
     problem.graph.winds_between(min(begins), max(begins))
     job = _Job(problem, request, request.cost if choice is None else choice)
     workers = min(available_cores() if cores is None else cores, max(len(moments), 1))
+    found = _departures(job, list(zip(moments, begins, strict=True)), workers)
+    for done in range(len(moments)):
+        tracker.at("departures", done, len(moments))
+        yield next(found)
+
+
+def _departures(job: _Job, departures: Sequence[tuple[datetime, float]], workers: int) -> Iterator[Departure]:
+    """One after the other, by some workers."""
     if workers == 1:
-        yield from (job.depart(moment, begin) for moment, begin in zip(moments, begins, strict=True))
+        yield from (job.depart(*departure) for departure in departures)
         return
     import joblib
 
     yield from joblib.Parallel(n_jobs=workers, return_as="generator")(
-        joblib.delayed(job.depart)(moment, begin) for moment, begin in zip(moments, begins, strict=True)
+        joblib.delayed(job.depart)(*departure) for departure in departures
     )
 
 
@@ -106,7 +123,7 @@ class _Job:
         since, request = time.process_time(), self.request
         try:
             problem = optimise_order(self.problem, self.choice, begin)[0]
-            found = find_route(problem, self.choice, begin, shape_quickly)
+            found = find_route(problem, self.choice, begin, shaping=shape_quickly)
             flight = fly(
                 found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
                 found.airspeeds,

@@ -18,14 +18,14 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError, Problem
-from gcs_windplan.flight import clock
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.request import MOST_TO_ORDER, Request
-from gcs_windplan.planning.route import PlanningProblem, cost_between, find_route, unshaped
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.request import Request
+from gcs_windplan.planning.route import cost_between, find_route, unshaped
 from gcs_windplan.planning.search import find_open_path
+from gcs_windplan.progress import UNTRACKED, Tracker
 
 _MOMENTS: Final = (0.5, 1.0)  # of the flight in the order that is best at its begin: when changing costs are looked at
-_SAME: Final = 0.01  # [m]
 _WORTH: Final = 1e-6  # of the cost, that another order must gain over the given one
 
 
@@ -92,7 +92,7 @@ def best_order(costs: Costs, begin: float = 0.0) -> tuple[int, ...] | None:
 
 
 def optimise_order(
-    problem: PlanningProblem, choice: CostChoice, begin: float = 0.0
+    problem: PlanningProblem, choice: CostChoice, begin: float = 0.0, tracker: Tracker = UNTRACKED
 ) -> tuple[PlanningProblem, tuple[str, ...]]:
     """The same with its vias in the order that costs least, and a note that says so; as it is unless `order` is free.
 
@@ -103,7 +103,7 @@ def optimise_order(
     if request.order == "given" or len(request.via) < 2:
         return problem, ()
     mean = problem.in_the_mean()
-    order = _best_order(mean, choice, begin)
+    order = _best_order(mean, choice, begin, tracker)
     chosen, given = _cost_in(mean, choice, begin, order), _cost_in(mean, choice, begin, tuple(sorted(order)))
     if not chosen < given * (1 - _WORTH):
         return problem, ("order of the vias: as given, which is the best one",)
@@ -111,26 +111,9 @@ def optimise_order(
     return _reordered(problem, order), (f"order of the vias: {numbers}; {_saving(choice, chosen, given)}",)
 
 
-def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
-    """What is wrong with vias that are to be put in order: more than 12, or two places (n, 3) that are one."""
-    if request.order == "given":
-        return []
-    if len(request.via) > MOST_TO_ORDER:
-        text = f"{len(request.via)} vias are more than the {MOST_TO_ORDER} that can be put in order: give the order"
-        return [Problem(text, "order")]
-    problems = []
-    for i in range(1, len(sites) - 1):
-        apart = np.linalg.norm(sites - sites[i], axis=1)
-        same = next((j for j in (*range(i), len(sites) - 1) if apart[j] < _SAME), None)
-        if same is not None:
-            text = f"is the same place as {request.sites[same].field}: leave one of the two out"
-            problems.append(Problem(text, request.sites[i].field))
-    return problems
-
-
-def _best_order(problem: PlanningProblem, choice: CostChoice, begin: float) -> tuple[int, ...]:
+def _best_order(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> tuple[int, ...]:
     """The best order of the vias by costs on the graph. Raises `NoRouteError`."""
-    costs, errors = _costs(problem, choice, np.array([begin]))
+    costs, errors = _costs(problem, choice, np.array([begin]), tracker)
     order = best_order(costs, begin)
     if order is None:
         raise _no_order(problem.request, costs, errors)
@@ -138,7 +121,7 @@ def _best_order(problem: PlanningProblem, choice: CostChoice, begin: float) -> t
         return order
     lasting = sum(costs.seconds[0, a, b] for a, b in pairwise((0, *order, len(order) + 1)))
     later = begin + lasting * np.array(_MOMENTS)
-    more = _costs(problem, choice, later[later < problem.graph.ends])[0]
+    more = _costs(problem, choice, later[later < problem.graph.ends], tracker)[0]
     parts = [np.concatenate(part) for part in zip(_parts(costs), _parts(more), strict=True)]
     return best_order(Costs(*parts), begin) or order
 
@@ -148,15 +131,17 @@ def _parts(costs: Costs) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _costs(
-    problem: PlanningProblem, choice: CostChoice, moments: FloatArray
+    problem: PlanningProblem, choice: CostChoice, moments: FloatArray, tracker: Tracker
 ) -> tuple[Costs, dict[tuple[int, int], NoRouteError]]:
     """The costs between the sites on the graph, and why there is no way where there is none."""
     sites = problem.sites
     shape = len(moments), len(sites), len(sites)
     costs, seconds = np.full(shape, np.inf), np.full(shape, np.inf)
     errors = {}
+    pairs = [(a, b) for a in range(len(sites) - 1) for b in range(1, len(sites)) if a != b]
     for m, moment in enumerate(moments.tolist()):
-        for a, b in ((a, b) for a in range(len(sites) - 1) for b in range(1, len(sites)) if a != b):
+        for number, (a, b) in enumerate(pairs, m * len(pairs)):
+            tracker.at("ordering the vias", number, len(moments) * len(pairs))
             cost = cost_between(problem, choice, sites[a], sites[b], moment)
             try:
                 path = find_open_path(problem.graph, cost, sites[a], sites[b], moment)
@@ -188,7 +173,7 @@ def _no_order(request: Request, costs: Costs, errors: dict[tuple[int, int], NoRo
 def _cost_in(problem: PlanningProblem, choice: CostChoice, begin: float, order: tuple[int, ...]) -> float:
     """What the graph's route in an order costs, infinite where it cannot be flown."""
     try:
-        return find_route(_reordered(problem, order), choice, begin, unshaped).cost
+        return find_route(_reordered(problem, order), choice, begin, shaping=unshaped).cost
     except NoRouteError:
         return float("inf")
 
@@ -205,6 +190,5 @@ def _saving(choice: CostChoice, chosen: float, given: float) -> str:
     if not np.isfinite(given):
         return "the given one cannot be flown"
     saved, share = given - chosen, f"{100 * (1 - chosen / given):.0f} %"
-    known = {"time": f"{clock(saved)} min", "distance": f"{saved / 1000:.2f} km", "energy": f"{saved / 3600:.0f} Wh"}
-    amount = known.get(choice.name)
+    amount = choice.leg_cost.words(saved)
     return f"saves {amount} ({share}) against the given one" if amount else f"saves {share} against the given one"

@@ -6,7 +6,6 @@ request ─▶ sites ─▶ veil ─▶ wind at its nodes ─▶ A* ─▶ shapi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,32 +13,22 @@ from functools import partial
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import BatteryError, NoRouteError, RequestError, WindError
+from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, Leg, Totals, Waypoint, clock, fly
 from gcs_windplan.planning.battery import BatteryUse, battery_use, check_reserve
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.ensemble import Spread, spread_of
-from gcs_windplan.planning.limits import Strongest, limits_broken_at_sites, strongest_along, wind_limits
-from gcs_windplan.planning.order import optimise_order, too_many_or_equal
-from gcs_windplan.planning.request import Request, Roadmap
+from gcs_windplan.planning.limits import Strongest, strongest_along
+from gcs_windplan.planning.order import optimise_order
+from gcs_windplan.planning.problem import PlanningProblem, pose_problem
+from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.returns import WaysHome, check_return, home_from_the_end, ways_home
-from gcs_windplan.planning.route import FoundRoute, PlanningProblem, find_route, power_of, unshaped
-from gcs_windplan.planning.search import NodeWinds, sample_wind
+from gcs_windplan.planning.route import FoundRoute, find_route, unshaped
+from gcs_windplan.planning.search import NodeWinds
 from gcs_windplan.planning.shaping import shape, shape_quickly
-from gcs_windplan.planning.sites import (
-    check_graph_size,
-    choose_area,
-    choose_layers,
-    choose_nodes,
-    choose_spacing,
-    place_sites,
-    windless_sites,
-)
-from gcs_windplan.planning.veil import GridVeil, PrmVeil, lay_grid, lay_prm
 from gcs_windplan.planning.waiting import later_departure_note, next_feasible_departure
-from gcs_windplan.scene import Clearance
-from gcs_windplan.terrain import Extent
+from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,19 +88,23 @@ class Plan:
         )
 
 
-def plan_route(request: Request) -> Plan:
+def plan_route(
+    request: Request, *, progress: ProgressCallback | None = None, cancel: CancelToken | None = None
+) -> Plan:
     """Plan the request's route by its own cost.
+
+    `progress` is called between the steps, and `cancel` is looked at: then `CancelledError` is raised.
 
     Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
     `TerrainError` where the data do not cover the place, `NoRouteError` where no route exists, and `BatteryError` where
     the best one breaks the battery's reserve, or leads to where the vehicle cannot come home from.
     """
-    problem = pose_problem(request)
-    plan = solve(problem, request.cost)
+    problem = pose_problem(request, progress=progress, cancel=cancel)
+    plan = solve(problem, request.cost, progress=progress, cancel=cancel)
     try:
         refuse_unsafe(plan)
     except BatteryError as error:
-        raise BatteryError(f"{error}{_lower_energy_hint(problem)}") from error
+        raise BatteryError(f"{error}{_lower_energy_hint(problem, Tracker(progress, cancel))}") from error
     return plan
 
 
@@ -123,61 +116,49 @@ def refuse_unsafe(plan: Plan) -> None:
         check_return(plan.ways_home, plan.battery, plan.flight)
 
 
-def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
+def plan_routes(
+    request: Request,
+    choices: Sequence[CostChoice],
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> list[Plan]:
     """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
-    problem = pose_problem(request)
-    return [solve(problem, choice) for choice in choices]
+    problem = pose_problem(request, progress=progress, cancel=cancel)
+    return [solve(problem, choice, progress=progress, cancel=cancel) for choice in choices]
 
 
-def pose_problem(request: Request) -> PlanningProblem:
-    """Stand the sites, lay the veil, and let the wind blow on it. Raises as `plan_route` does."""
-    rules = Clearance(
-        request.terrain,
-        request.clearance,
-        np.inf if request.max_height is None else request.max_height,
-        request.obstacles,
-        request.airspace,
-        request.collision_test,
-    )
-    layers = choose_layers(request)
-    sites, problems = place_sites(request, rules, layers)
-    problems = problems or windless_sites(request, sites) or limits_broken_at_sites(request, sites)
-    problems = problems or too_many_or_equal(request, sites)
-    if problems:
-        raise RequestError([request.locate(problem) for problem in problems])
-    begin = time.perf_counter()
-    area = choose_area(request, sites)
-    rules = replace(rules, area=area)
-    veil = _lay_veil(request, rules, layers, sites, area)
-    graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
-    mean = replace(request, members=())
-    mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
-    seconds = time.perf_counter() - begin
-    return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
-
-
-def solve(problem: PlanningProblem, choice: CostChoice, begin: float = 0.0) -> Plan:
+def solve(
+    problem: PlanningProblem,
+    choice: CostChoice,
+    begin: float = 0.0,
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> Plan:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
     """
-    ordered, notes = optimise_order(problem, choice, begin)
-    plan = _quickest(ordered, choice, begin)
+    tracker = Tracker(progress, cancel)
+    ordered, notes = optimise_order(problem, choice, begin, tracker)
+    plan = _quickest(ordered, choice, begin, tracker)
     return replace(plan, notes=(*notes, *plan.notes))
 
 
-def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float) -> Plan:
+def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> Plan:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
-    if choice.name != "time" or not problem.request.free_airspeed or problem.request.airframe is None:
-        return _planned(problem, choice, begin)
+    weighs_time = math.isinf(choice.leg_cost.value_of_time(math.inf))
+    if not weighs_time or not problem.request.free_airspeed or problem.request.airframe is None:
+        return _planned(problem, choice, begin, tracker)
     power = problem.request.airframe.power
     quick, cost_index = quickest_within(
-        lambda cost_index: _planned(problem, choice, begin, cost_index, shape_quickly),
+        lambda cost_index: _planned(problem, choice, begin, tracker, cost_index=cost_index, shaping=shape_quickly),
         lambda plan: math.inf if plan.battery is None else plan.battery.missing,
         0.0,
         float(power.watts(problem.request.vehicle.airspeed, 0.0)),
     )
-    plan = _planned(problem, choice, begin, cost_index)
+    plan = _planned(problem, choice, begin, tracker, cost_index=cost_index)
     fits = plan.battery is not None and plan.battery.missing == 0
     return plan if fits or cost_index == 0.0 else quick
 
@@ -186,6 +167,8 @@ def _planned(
     problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
+    tracker: Tracker,
+    *,
     cost_index: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
 ) -> Plan:
@@ -196,10 +179,11 @@ def _planned(
     """
     request = problem.request
     try:
-        found, spread = _best_route(problem, choice, begin, cost_index, shaping)
+        found, spread = _best_route(problem, choice, begin, tracker, cost_index=cost_index, shaping=shaping)
     except NoRouteError as error:
         raise NoRouteError(
-            f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem))}", error.cuts
+            f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem, tracker))}",
+            error.cuts,
         ) from error
     flight = fly(
         found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
@@ -211,12 +195,12 @@ def _planned(
     )  # fmt: skip
     notes = _notes(request, problem.graph.winds_between(begin, found.arrival))
     if found.deferred:
-        notes += later_departure_note(found.arrival - begin, begin, partial(_lasting, problem))
+        notes += later_departure_note(found.arrival - begin, begin, partial(_lasting, problem, tracker))
     en_route = spread.energy_at(request.robust) if spread is not None and spread.energies else None
     battery = battery_use(request, flight, en_route, _home_again(problem, flight, begin))
     ways, strongest = None, None
     if battery is not None and request.airframe is not None and shaping is shape:
-        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin)
+        ways = ways_home(problem, flight, battery, request.airframe.battery.capacity, begin, tracker=tracker)
     if problem.graph.limits:
         strongest = strongest_along(request, found.points, begin, found.airspeeds)
         strongest.check_limits(request.limits, request.robust)
@@ -229,11 +213,11 @@ def _home_again(problem: PlanningProblem, flight: Flight, begin: float) -> float
     return home_from_the_end(problem, flight, begin) if returns else 0.0
 
 
-def _lower_energy_hint(problem: PlanningProblem) -> str:
+def _lower_energy_hint(problem: PlanningProblem, tracker: Tracker) -> str:
     """Whether the route of least energy would do, in words."""
     choice = CostChoice("energy")
     try:
-        plan = solve(problem, choice)
+        plan = solve(problem, choice, progress=tracker.progress, cancel=tracker.cancel)
         refuse_unsafe(plan)
     except (BatteryError, NoRouteError):
         return ""
@@ -245,17 +229,23 @@ def _lower_energy_hint(problem: PlanningProblem) -> str:
 
 
 def _best_route(
-    problem: PlanningProblem, choice: CostChoice, begin: float, cost_index: float, shaping: Callable[..., FloatArray]
+    problem: PlanningProblem,
+    choice: CostChoice,
+    begin: float,
+    tracker: Tracker,
+    *,
+    cost_index: float,
+    shaping: Callable[..., FloatArray],
 ) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
     request = problem.request
     if not request.members:
-        return find_route(problem, choice, begin, shaping, cost_index), None
-    ways = [problem, problem.in_the_mean()] if choice.name in ("time", "energy") else [problem]
+        return find_route(problem, choice, begin, shaping=shaping, cost_index=cost_index, tracker=tracker), None
+    ways = [problem, problem.in_the_mean()] if choice.leg_cost.of_air else [problem]
     candidates, error = [], None
     for way in ways:
         try:
-            found = find_route(way, choice, begin, shaping, cost_index)
+            found = find_route(way, choice, begin, shaping=shaping, cost_index=cost_index, tracker=tracker)
         except NoRouteError as no_route:
             error = error or no_route
             continue
@@ -265,7 +255,7 @@ def _best_route(
     if not candidates:
         assert error is not None
         raise error
-    measure = Spread.energy_at if choice.name == "energy" else Spread.at
+    measure = Spread.energy_at if choice.leg_cost.needs_power else Spread.at
     found, spread = min(candidates, key=lambda candidate: measure(candidate[1], request.robust))
     if not np.isfinite(spread.at(request.robust)):
         able = len(spread.seconds) - spread.unflyable
@@ -275,17 +265,6 @@ def _best_route(
             {"wind": spread.unflyable},
         )
     return found, spread
-
-
-def _lay_veil(
-    request: Request, rules: Clearance, layers: Sequence[float], sites: FloatArray, area: Extent
-) -> GridVeil | PrmVeil:
-    """The veil that the request asks for."""
-    check_graph_size(request, area, layers)
-    graph = request.graph
-    if isinstance(graph, Roadmap):
-        return lay_prm(rules, area, choose_nodes(request, area), graph.seed, layers, sites, graph.radius)
-    return lay_grid(rules, area, choose_spacing(request, area), layers, graph.neighbours)
 
 
 def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
@@ -308,10 +287,10 @@ def _notes(request: Request, air: NodeWinds) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _lasting(problem: PlanningProblem, begin: float) -> float:
+def _lasting(problem: PlanningProblem, tracker: Tracker, begin: float) -> float:
     """How long the graph's quickest path takes that begins at `begin` [s]; infinite where there is none."""
     try:
-        found = find_route(problem, CostChoice("time"), begin, unshaped)
+        found = find_route(problem, CostChoice("time"), begin, shaping=unshaped, tracker=tracker)
     except (NoRouteError, WindError):
         return float("inf")
     spread = spread_of(problem.request, found.points, begin, found.airspeeds)

@@ -13,9 +13,11 @@ from gcs_windplan.errors import BatteryError, NoRouteError, WindError
 from gcs_windplan.flight import Flight, clock
 from gcs_windplan.planning.battery import BatteryUse
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.route import PlanningProblem, cost_between
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.route import cost_between
 from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.planning.sites import choose_layers, site_points
+from gcs_windplan.progress import UNTRACKED, Tracker
 from gcs_windplan.vehicle import air_density
 
 _ENERGY = CostChoice("energy")
@@ -51,7 +53,13 @@ class WaysHome:
 
 
 def ways_home(
-    problem: PlanningProblem, flight: Flight, use: BatteryUse, capacity: float, begin: float = 0.0
+    problem: PlanningProblem,
+    flight: Flight,
+    use: BatteryUse,
+    capacity: float,
+    begin: float = 0.0,
+    *,
+    tracker: Tracker = UNTRACKED,
 ) -> WaysHome:
     """The ways home from each waypoint of a flight that begins at `begin` [s since departure].
 
@@ -63,7 +71,7 @@ def ways_home(
     times = begin + np.array([w.seconds for w in flight.waypoints])
     request = problem.request
     targets = [problem.sites[0], *site_points(request, request.rally, choose_layers(request))]
-    table = np.array([_energies(problem, points, times, target) for target in targets])
+    table = np.array([_energies(problem, points, times, target, tracker) for target in targets])
     home, alternates = table[0], table[1:].min(axis=0, initial=math.inf)
     drawn = (1 - np.array(use.left)) * capacity
     spare = use.allowed - drawn - np.minimum(home, alternates)
@@ -80,7 +88,7 @@ def home_from_the_end(problem: PlanningProblem, flight: Flight, begin: float = 0
     problem = problem.in_the_mean()
     last = flight.waypoints[-1]
     point = np.array([[last.east, last.north, last.altitude]])
-    return float(_energies(problem, point, np.array([begin + last.seconds]), problem.sites[0])[0])
+    return float(_energies(problem, point, np.array([begin + last.seconds]), problem.sites[0], UNTRACKED)[0])
 
 
 def check_return(ways: WaysHome | None, use: BatteryUse | None, flight: Flight) -> None:
@@ -103,9 +111,15 @@ def check_return(ways: WaysHome | None, use: BatteryUse | None, flight: Flight) 
     )
 
 
-def _energies(problem: PlanningProblem, points: FloatArray, times: FloatArray, target: FloatArray) -> FloatArray:
+def _energies(
+    problem: PlanningProblem, points: FloatArray, times: FloatArray, target: FloatArray, tracker: Tracker
+) -> FloatArray:
     """The energy [J] from points (n, 3) at times (n,) to a target (3,) and down to the ground there."""
-    return np.array([_energy(problem, point, target, time) for point, time in zip(points, times, strict=True)])
+    energies = np.empty(len(points))
+    for i, (point, time) in enumerate(zip(points, times, strict=True)):
+        tracker.at("returns from the waypoints", i, len(points))
+        energies[i] = _energy(problem, point, target, time)
+    return energies
 
 
 def _energy(problem: PlanningProblem, point: FloatArray, target: FloatArray, time: float) -> float:

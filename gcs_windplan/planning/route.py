@@ -5,61 +5,28 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, NoReturn
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import NoRouteError, Problem, RequestError
+from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight import fly
-from gcs_windplan.kernels.power import PowerGrid
 from gcs_windplan.planning.airspeeds import best_airspeeds
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.limits import strongest_along
-from gcs_windplan.planning.request import Request
-from gcs_windplan.planning.search import WindGraph, find_open_path
+from gcs_windplan.planning.problem import PlanningProblem
+from gcs_windplan.planning.search import find_open_path
 from gcs_windplan.planning.shaping import shape
+from gcs_windplan.progress import UNTRACKED, Tracker
 from gcs_windplan.scene import Clearance
-from gcs_windplan.vehicle import Vehicle
-from gcs_windplan.vehicle.power_grid import airspeed_choices, tabulate
 
 #: [s] what a multicopter loses at a slight corner: over rough ground ArduCopter was quickest, by its own law, when
 #: waypoints that gain less were left out (0.5 and 1 s were alike, 0 and 2 s half a percent and more slower).
 _CORNER: Final = 0.7
 _SHORT_LEG: Final = 1.0  # [m] legs so short are none: half of ArduCopter's default waypoint radius
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlanningProblem:
-    """A request whose sites stand and whose veil is laid: all that routes by any cost, at any departure, share.
-
-    `power` is there
-    where the airframe is known, `mean_graph` with the members' mean where there is an ensemble. Threads may share it.
-    """
-
-    request: Request
-    rules: Clearance
-    sites: FloatArray
-    graph: WindGraph
-    seconds: float
-    power: PowerGrid | None = None
-    mean_graph: WindGraph | None = None
-
-    def in_the_mean(self) -> PlanningProblem:
-        """The same without the members of an ensemble: only their mean blows."""
-        if self.mean_graph is None:
-            return self
-        return replace(self, request=replace(self.request, members=()), graph=self.mean_graph, mean_graph=None)
-
-    @property
-    def vehicle(self) -> Vehicle:
-        """The vehicle, at the largest airspeed if it is free to choose: so fast it goes where time is all."""
-        request = self.request
-        if not request.free_airspeed or request.airframe is None:
-            return request.vehicle
-        return replace(request.vehicle, airspeed=request.airframe.maximum_airspeed)
 
 
 @dataclass(slots=True, eq=False)
@@ -81,44 +48,26 @@ class FoundRoute:
     airspeeds: FloatArray | None = None
 
 
-def power_of(request: Request, graph: WindGraph, sites: FloatArray) -> PowerGrid | None:
-    """The vehicle's power between the lowest and the highest place of the veil; None where no airframe tells it.
-
-    Raises `RequestError` where a cost or free airspeeds ask for it.
-    """
-    airframe = request.airframe
-    if airframe is None:
-        if request.cost.name == "energy":
-            problem = Problem("energy asks for the vehicle's power: name its airframe in vehicle.airframe", "cost")
-            raise RequestError([request.locate(problem)])
-        return None
-    if request.vehicle.speed_model == "paper" and (request.cost.name == "energy" or request.free_airspeed):
-        problem = Problem("the paper's speed model has no airspeed to draw power at: `triangle`", "vehicle.speed_model")
-        raise RequestError([request.locate(problem)])
-    heights = np.concatenate([graph.points[:, 2], sites[:, 2]])
-    between = float(np.nanmin(heights)), float(np.nanmax(heights))
-    if request.free_airspeed:
-        airspeeds = airspeed_choices(airframe, sum(between) / 2)
-    else:
-        airspeeds = np.array([request.vehicle.airspeed])
-    return tabulate(airframe.power, request.vehicle, airspeeds, between)
-
-
 def find_route(
     problem: PlanningProblem,
     choice: CostChoice,
     begin: float,
+    *,
     shaping: Callable[..., FloatArray] = shape,
     cost_index: float = math.inf,
+    tracker: Tracker = UNTRACKED,
 ) -> FoundRoute:
     """The route by a cost that begins at `begin` [s since departure]. Raises `NoRouteError`.
 
     By `time` a finite `cost_index` [W] weighs seconds against energy; all other costs ignore it.
     """
     found = FoundRoute(problem.sites[:1], begin)
-    for start, goal in pairwise(problem.sites):
-        cost = cost_between(problem, choice, start, goal, found.arrival, cost_index)
+    sections = len(problem.sites) - 1
+    for section, (start, goal) in enumerate(pairwise(problem.sites)):
+        tracker.at(f"searching by {choice.name}", section, sections)
+        cost = cost_between(problem, choice, start, goal, found.arrival, cost_index=cost_index)
         path = find_open_path(problem.graph, cost, start, goal, found.arrival)
+        tracker.at(f"shaping the route by {choice.name}", section, sections)
         since = time.perf_counter()
         shaped = shaping(path.points, cost, problem.rules)
         found.shaping_seconds += time.perf_counter() - since
@@ -144,24 +93,21 @@ def cost_between(
     start: FloatArray,
     goal: FloatArray,
     begin: float,
+    *,
     cost_index: float = math.inf,
-) -> LegCost:
+) -> SectionCost:
     """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
     request = problem.request
     straight = float(np.linalg.norm(goal - start))
     edge = problem.graph.veil.edge_length
-    power = None
-    if choice.name == "energy":
-        power = problem.power
-    elif choice.name == "time" and problem.power is not None and math.isfinite(cost_index):
-        power = problem.power._replace(cost_index=cost_index)
-    return LegCost(
+    power = choice.leg_cost.power(problem.power, cost_index)
+    return SectionCost(
         choice, request.wind, problem.vehicle, edge, straight, begin, request.members, request.robust, power=power,
         waypoint_seconds=_CORNER if request.vehicle.hovers else 0.0, limits=problem.graph.limits,
     )  # fmt: skip
 
 
-def unshaped(points: FloatArray, cost: LegCost, rules: Clearance) -> FloatArray:
+def unshaped(points: FloatArray, cost: SectionCost, rules: Clearance) -> FloatArray:
     """The graph's path as it is: a shaping that shapes nothing."""
     return points
 
@@ -193,11 +139,17 @@ def _airspeeds(
     if not request.free_airspeed or request.airframe is None or problem.power is None:
         return None
     slowest, fastest = float(problem.power.airspeeds[0]), float(problem.power.airspeeds[-1])
-    if choice.name == "time" and math.isinf(cost_index):
+    value = choice.leg_cost.value_of_time(cost_index)
+    if math.isinf(value):
         return np.full(len(points) - 1, fastest)
-    value = cost_index if choice.name == "time" else 0.0
     return best_airspeeds(
-        points, request.wind, request.vehicle, request.airframe.power, (slowest, fastest), begin, value
+        points,
+        request.wind,
+        request.vehicle,
+        request.airframe.power,
+        (slowest, fastest),
+        begin=begin,
+        cost_index=value,
     )
 
 

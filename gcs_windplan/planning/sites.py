@@ -10,7 +10,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import Problem, RequestError
-from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
+from gcs_windplan.planning.request import MOST_TO_ORDER, Request, Roadmap, Site, Uniform
 from gcs_windplan.planning.veil import SHARE_OF_GRID, roadmap_radius
 from gcs_windplan.scene import Airspace, Clearance
 from gcs_windplan.terrain import Extent, Terrain
@@ -22,6 +22,7 @@ _MARGIN = 0.25  # of the longest section between two sites
 _MOST_NODES = 20_000_000  # of a grid: 5 GB
 _MOST_EDGES = 1e7  # of a roadmap: 3 GB
 _SLACK = 1e-6  # [m]
+_SAME = 0.01  # [m]
 
 
 def choose_layers(request: Request) -> tuple[float, ...]:
@@ -247,3 +248,20 @@ def windless_sites(request: Request, points: FloatArray) -> list[Problem]:
         for site, gone in zip(request.sites, unknown, strict=True)
         if gone
     ]
+
+
+def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
+    """What is wrong with vias that are to be put in order: more than 12, or two places (n, 3) that are one."""
+    if request.order == "given":
+        return []
+    if len(request.via) > MOST_TO_ORDER:
+        text = f"{len(request.via)} vias are more than the {MOST_TO_ORDER} that can be put in order: give the order"
+        return [Problem(text, "order")]
+    problems = []
+    for i in range(1, len(sites) - 1):
+        apart = np.linalg.norm(sites - sites[i], axis=1)
+        same = next((j for j in (*range(i), len(sites) - 1) if apart[j] < _SAME), None)
+        if same is not None:
+            text = f"is the same place as {request.sites[same].field}: leave one of the two out"
+            problems.append(Problem(text, request.sites[i].field))
+    return problems

@@ -44,12 +44,12 @@ def bounded(n: str, neighbours: str, way: str, bound: str) -> Measured:
 
 def _search(world: Square, neighbours: int, way: str, bound: str = "h2") -> dict[str, float]:
     from gcs_windplan.kernels.best_first import search_grid
-    from gcs_windplan.planning.cost import CostChoice, LegCost
+    from gcs_windplan.planning.cost import CostChoice, SectionCost
     from gcs_windplan.planning.veil.grid import grid_steps
     from gcs_windplan.wind import Calm
 
     start, goal = world.ends(way)
-    cost = LegCost(CostChoice("time"), Calm(), VEHICLE, SPACING, 1.0)  # the nodes carry their winds
+    cost = SectionCost(CostChoice("time"), Calm(), VEHICLE, SPACING, 1.0)  # the nodes carry their winds
     setting = cost.setting(
         np.array([*np.array(divmod(goal, world.n))[::-1] * SPACING, world.heights[goal]]), world.winds
     )

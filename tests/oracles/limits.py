@@ -17,7 +17,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.paper.fields import Diverging, Jet, Rotation
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.shaping import shape
 from gcs_windplan.planning.veil import lay_grid
@@ -65,13 +65,13 @@ class Limit:
     def __str__(self) -> str:
         return f"{self.case}-{self.way}-{self.model}"
 
-    def route(self, nodes: int = 101, neighbours: int = 16) -> tuple[LegCost, FloatArray, FloatArray]:
+    def route(self, nodes: int = 101, neighbours: int = 16) -> tuple[SectionCost, FloatArray, FloatArray]:
         """The cost, the path through a square grid with so many nodes a side, and that path shaped."""
         spacing = (self.area.east - self.area.west) / (nodes - 1)
         veil = lay_grid(_GROUND, self.area, spacing, (_LAYER,), neighbours)
         start, goal = (np.array([*place, 0.0]) for place in (self.start, self.goal))
         vehicle = Vehicle(self.airspeed, 9.0, 9.0, speed_model=self.model)
-        cost = LegCost(CostChoice("time"), self.wind, vehicle, veil.edge_length, math.dist(self.start, self.goal))
+        cost = SectionCost(CostChoice("time"), self.wind, vehicle, veil.edge_length, math.dist(self.start, self.goal))
         path = find_path(sample_wind(veil, self.wind), cost, start, goal).points
         return cost, path, shape(path, cost, _GROUND)
 

@@ -16,7 +16,7 @@ import gcs_windplan as gw
 from gcs_windplan.cli.app import app
 from gcs_windplan.cli.tables import summary_lines
 from gcs_windplan.errors import NoRouteError, RequestError
-from gcs_windplan.planning.cost import COST_NAMES
+from gcs_windplan.planning.cost import COSTS
 from gcs_windplan.planning.departures import sweep
 from gcs_windplan.planning.limits import strongest_along
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
@@ -25,7 +25,7 @@ from gcs_windplan.wind.field import Steady
 from tests.ensembles import Corridor, Everywhere, Gate, divided, request
 from tests.worlds import WavyWind, rough_dem
 
-COSTS = [name for name in COST_NAMES if name != "energy"]  # that one asks for an airframe
+WITHOUT_AIRFRAME = [name for name in COSTS if name != "energy"]  # that one asks for an airframe
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def test_a_route_stays_out_of_the_wind_that_is_too_strong():
 
 
 @pytest.mark.parametrize("graph", [Uniform(60.0), Uniform(60.0, 64), Roadmap(nodes=700, seed=3)])
-@pytest.mark.parametrize("cost", COSTS)
+@pytest.mark.parametrize("cost", WITHOUT_AIRFRAME)
 def test_a_curtain_between_the_nodes_is_passed_through_its_gap(graph, cost):
     vehicle = gw.Vehicle(14.0)
     asked = request(wind=Curtain(), vehicle=vehicle, graph=graph, cost=gw.CostChoice(cost))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import gcs_windplan as gw
 from gcs_windplan.errors import NoRouteError, RequestError
 from gcs_windplan.planning.order import Costs, best_order, optimise_order
-from gcs_windplan.planning.planner import pose_problem
+from gcs_windplan.planning.problem import pose_problem
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
 from gcs_windplan.planning.route import find_route, unshaped
 from gcs_windplan.scene import Airspace, Prism
@@ -44,7 +44,7 @@ def graph_cost(asked, order, choice=TIME) -> float:
     """What the graph's route costs with the vias in an order."""
     problem = pose_problem(replace(asked, via=tuple(asked.via[i] for i in order), order="given"))
     try:
-        return find_route(problem, choice, 0.0, unshaped).cost
+        return find_route(problem, choice, 0.0, shaping=unshaped).cost
     except NoRouteError:
         return np.inf
 

@@ -15,7 +15,7 @@ import gcs_windplan as gw
 from gcs_windplan.errors import RequestError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.paper import SampledTest
-from gcs_windplan.planning.cost import COST_NAMES
+from gcs_windplan.planning.cost import COSTS
 from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
 from gcs_windplan.scene import Airspace, Prism
 from gcs_windplan.terrain import Dem
@@ -45,7 +45,7 @@ def smallest_height(dem: Dem, plan) -> float:
 
 
 @pytest.mark.parametrize("graph", [Uniform(60.0, 8), Uniform(60.0, 32), Roadmap(nodes=600, seed=2), Roadmap()])
-@pytest.mark.parametrize("cost", COST_NAMES)
+@pytest.mark.parametrize("cost", COSTS)
 def test_a_route_keeps_every_limit(graph, cost, gallery):
     dem = rough_dem(4, relief=70.0)
     airframe = read_airframe(gallery / "vehicles" / "large_multirotor.yaml") if cost == "energy" else None

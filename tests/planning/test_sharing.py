@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import gcs_windplan as gw
-from gcs_windplan.planning.cost import CostChoice, LegCost
-from gcs_windplan.planning.planner import pose_problem
+from gcs_windplan.planning.cost import CostChoice, SectionCost
+from gcs_windplan.planning.problem import pose_problem
 from gcs_windplan.planning.request import Uniform
 from gcs_windplan.planning.route import find_route, unshaped
 from gcs_windplan.planning.search import find_path, sample_wind
@@ -43,7 +43,7 @@ def test_threads_that_search_one_graph_find_what_each_finds_alone(members):
 
     def found(graph, begin: float) -> tuple[float, list]:
         ensemble = winds if members > 1 else ()
-        cost = LegCost(CostChoice("time"), winds[0], vehicle, veil.edge_length, 1.0, begin, ensemble)
+        cost = SectionCost(CostChoice("time"), winds[0], vehicle, veil.edge_length, 1.0, begin, ensemble)
         path = find_path(graph, cost, start, goal, begin)
         return path.cost, path.points.tolist()
 
@@ -61,7 +61,7 @@ def test_threads_that_route_one_problem_find_what_each_finds_alone():
     begins = [2700.0 * k for k in range(4)]
 
     def found(problem, begin: float) -> tuple[float, list]:
-        route = find_route(problem, CostChoice("time"), begin, unshaped)
+        route = find_route(problem, CostChoice("time"), begin, shaping=unshaped)
         return route.arrival, route.points.tolist()
 
     alone = [found(pose_problem(asked), begin) for begin in begins]

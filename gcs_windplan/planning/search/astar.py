@@ -12,7 +12,7 @@ from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.kernels.best_first import search_csr, search_grid
 from gcs_windplan.kernels.edges import Setting, joins, remaining_at
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.planning.search.wind_graph import NodeWinds, WindGraph
 from gcs_windplan.planning.veil import GridVeil, PrmVeil, breaches_around
 from gcs_windplan.scene import BREACHES
@@ -48,17 +48,19 @@ class GraphPath:
     deferred: int = 0
 
 
-def find_path(graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0) -> GraphPath:
+def find_path(
+    graph: WindGraph, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
+) -> GraphPath:
     """The path from start to goal, (3,) each, that begins at `clock` [s since departure].
 
     Raises `NoRouteError` that says what cuts the goal off.
     """
-    begin = time.perf_counter()
+    begin, ends = time.perf_counter(), np.stack([start, goal])
     find = _search_grid if isinstance(graph.veil, GridVeil) else _search_prm
     horizon = _LONG * float(np.linalg.norm(goal - start)) / cost.vehicle.airspeed
     while True:
         winds = graph.winds_between(clock, clock + horizon)
-        found = find(graph, winds, cost, start, goal, clock)
+        found = find(graph, winds, cost, ends, clock)
         complete = len(found.points) > 0 and found.cost <= cost.least_in(horizon)
         reaches = winds.times is None or clock + horizon >= graph.ends
         if complete or reaches or found.outlasted == 0:
@@ -67,7 +69,7 @@ def find_path(graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArr
     seconds = time.perf_counter() - begin
     if len(found.points) == 0:
         reached = np.flatnonzero(np.isfinite(found.reached))
-        raise no_route(graph, winds, reached, start, goal, cost, found.outlasted > 0)
+        raise no_route(graph, winds, reached, ends, cost, outlasted=found.outlasted > 0)
     return GraphPath(found.points, found.cost, found.expanded, seconds, found.deferred)
 
 
@@ -83,13 +85,11 @@ class _Found:
     deferred: int
 
 
-def _search_grid(
-    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
-) -> _Found:
+def _search_grid(graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, ends: FloatArray, clock: float) -> _Found:
     """A* on the grid; the sites are joined to the nodes around them."""
     veil = graph.veil
     assert isinstance(veil, GridVeil)
-    ends = np.stack([start, goal])
+    start, goal = ends
     blows, times = node_winds.winds, node_winds.times
     air = graph.winds_at(ends, times)
     site_winds, goal_winds = (np.ascontiguousarray(air[..., i : i + 1, :]) for i in (0, 1))
@@ -125,8 +125,10 @@ def _search_grid(
     return _Found(points, min(direct, total), expanded, reached, outlasted, deferred)
 
 
-def _estimates(cost: LegCost, points: FloatArray, start: FloatArray, goal: FloatArray, setting: Setting) -> FloatArray:
-    """The cost's estimates; none (0) where the wind on the way to the goal is not known, or closed."""
+def _estimates(
+    cost: SectionCost, points: FloatArray, start: FloatArray, goal: FloatArray, setting: Setting
+) -> FloatArray:
+    """The cost's estimates; none (0) where the wind on the way to the goal is not known."""
     estimates = cost.estimates(points, start, goal, setting)
     return np.where(np.isnan(estimates), 0.0, estimates)
 
@@ -141,18 +143,17 @@ def _clear_nodes(graph: WindGraph, site: FloatArray) -> IntArray:
     return clear
 
 
-def _search_prm(
-    graph: WindGraph, node_winds: NodeWinds, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float
-) -> _Found:
+def _search_prm(graph: WindGraph, node_winds: NodeWinds, cost: SectionCost, ends: FloatArray, clock: float) -> _Found:
     """A* on the roadmap, in which the sites are nodes."""
     veil = graph.veil
     assert isinstance(veil, PrmVeil)
-    ends = [int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in (start, goal)]
+    start, goal = ends
+    first, last = (int(np.argmin(np.linalg.norm(veil.points - site, axis=1))) for site in ends)
     tally = np.zeros(2, dtype=np.int64)
     setting = cost.setting(goal, node_winds.winds)
     nodes, total, expanded, reached = search_csr(
         veil.first, veil.neighbours, veil.points, node_winds.winds, _estimates(cost, veil.points, start, goal, setting),
-        cost.performance(), setting, cost.power, ends[0], ends[1],
+        cost.performance(), setting, cost.power, first, last,
         node_winds.times, clock, cost.rank, cost.scratch(), tally,
     )  # fmt: skip
     return _Found(veil.points[nodes], total, expanded, reached, int(tally[0]), int(tally[1]))
@@ -162,12 +163,13 @@ def no_route(
     graph: WindGraph,
     winds: NodeWinds,
     reached: IntArray,
-    start: FloatArray,
-    goal: FloatArray,
-    cost: LegCost,
+    ends: FloatArray,
+    cost: SectionCost,
+    *,
     outlasted: bool,
 ) -> NoRouteError:
     """The error that says what cuts the goal off: the legs from reached nodes to others, by what they break."""
+    start, goal = ends
     veil = graph.veil
     if isinstance(veil, PrmVeil):
         led, flags = _prm_border(veil, reached)
@@ -200,7 +202,7 @@ def no_route(
     )
 
 
-def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: LegCost) -> BoolArray:
+def _too_windy(graph: WindGraph, winds: NodeWinds, nodes: IntArray, goal: FloatArray, cost: SectionCost) -> BoolArray:
     """Which nodes (-1: the goal) limits of wind close at some time, in more members than may be left out."""
     if not graph.limits:
         return np.zeros(len(nodes), dtype=np.bool_)

@@ -16,7 +16,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight.wind_limits import NO_LIMITS
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.planning.search.astar import GraphPath, find_path
 from gcs_windplan.planning.search.wind_graph import WindGraph
 from gcs_windplan.planning.veil import GridVeil, without_legs, without_pairs
@@ -29,7 +29,7 @@ _FEWEST, _MOST = 5, 64  # samples of an edge
 
 
 def find_open_path(
-    graph: WindGraph, cost: LegCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
+    graph: WindGraph, cost: SectionCost, start: FloatArray, goal: FloatArray, clock: float = 0.0
 ) -> GraphPath:
     """`find_path` with every edge within the limits along its whole length. Raises `NoRouteError`."""
     if not cost.limits:
@@ -59,7 +59,7 @@ def find_open_path(
     )
 
 
-def _closed_legs(cost: LegCost, free: LegCost, points: FloatArray, times: FloatArray) -> IntArray:
+def _closed_legs(cost: SectionCost, free: SectionCost, points: FloatArray, times: FloatArray) -> IntArray:
     """The legs of a path (n, 3), passed at `times` (n,), that could be flown if there were no limits, and cannot."""
     spans = np.column_stack([times[:-1], times[1:]])
     when = spans if cost.changing and np.isfinite(times).all() else None
@@ -67,7 +67,7 @@ def _closed_legs(cost: LegCost, free: LegCost, points: FloatArray, times: FloatA
     return np.flatnonzero(~np.isfinite(bound) & np.isfinite(unbound))
 
 
-def _edges_closed(cost: LegCost, starts: FloatArray, ends: FloatArray, begin: float) -> BoolArray:
+def _edges_closed(cost: SectionCost, starts: FloatArray, ends: FloatArray, begin: float) -> BoolArray:
     """Which edges (n, 3) that begin at a moment [s since departure] are closed along them, in too many members."""
     winds = cost.members or (cost.wind,)
     edge = float(np.linalg.norm(ends - starts, axis=1).max(initial=0.0))
@@ -85,7 +85,7 @@ def _edges_closed(cost: LegCost, starts: FloatArray, ends: FloatArray, begin: fl
     return cost.too_many(closed)
 
 
-def _without_leg(graph: WindGraph, cost: LegCost, leg: FloatArray, begin: float) -> WindGraph:
+def _without_leg(graph: WindGraph, cost: SectionCost, leg: FloatArray, begin: float) -> WindGraph:
     """The graph without a leg (2, 3) that begins at `begin` [s], and without edges around it that are closed then."""
     veil, middle = graph.veil, leg.mean(axis=0)
     reach = 0.5 * float(np.linalg.norm(leg[1] - leg[0])) + _AROUND * veil.edge_length

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.scene import Clearance
 
 _SWEEPS: Final = 120  # on one polyline, every other vertex at a time
@@ -39,7 +39,7 @@ _SHARE: Final = 0.05  # of what moving has gained, that they may take as well
 _WITHIN: Final = 1e-3  # of the cost, that they may take in all
 
 
-def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float = _SPARE) -> FloatArray:
+def relax(points: FloatArray, cost: SectionCost, clearance: Clearance, spare: float = _SPARE) -> FloatArray:
     """A polyline (m, 3) with the same ends that is never dearer than the given one (n, 3), all legs clear.
 
     Of all those found, the one with the fewest waypoints whose cost lies within 0.1 % of the cheapest, less where
@@ -72,7 +72,7 @@ def relax(points: FloatArray, cost: LegCost, clearance: Clearance, spare: float 
     return best if cost.of_polyline(best) <= given else points
 
 
-def _without_idle(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float) -> FloatArray:
+def _without_idle(points: FloatArray, cost: SectionCost, clearance: Clearance, limit: float) -> FloatArray:
     """The polyline without the vertices that gain less than slowing down at them takes, those left settled again."""
     while True:
         thinned = thin(points, cost, clearance, limit, cost.waypoint_penalty)
@@ -84,7 +84,7 @@ def _without_idle(points: FloatArray, cost: LegCost, clearance: Clearance, limit
         points = settled
 
 
-def thin(points: FloatArray, cost: LegCost, clearance: Clearance, limit: float, gain: float = np.inf) -> FloatArray:
+def thin(points: FloatArray, cost: SectionCost, clearance: Clearance, limit: float, gain: float = np.inf) -> FloatArray:
     """Drop the vertices that matter least, one after the other, as long as the polyline costs at most `limit`.
 
     A vertex that saves more than `gain` stays.
@@ -121,7 +121,7 @@ def _halve(points: FloatArray) -> FloatArray:
 
 
 def settle(
-    points: FloatArray, cost: LegCost, clearance: Clearance, first_step: float = _FIRST_STEP
+    points: FloatArray, cost: SectionCost, clearance: Clearance, first_step: float = _FIRST_STEP
 ) -> tuple[FloatArray, float]:
     """Move the inner vertices until none gains any more; the polyline and its cost."""
     points = points.copy()
@@ -148,7 +148,7 @@ def settle(
     return points, cost.of_polyline(points) if cost.changing else float(legs.sum())
 
 
-def _spans(cost: LegCost, begins: FloatArray, ends: FloatArray) -> FloatArray | None:
+def _spans(cost: SectionCost, begins: FloatArray, ends: FloatArray) -> FloatArray | None:
     """When legs begin and end (n, 2), where that matters."""
     return np.column_stack([begins.ravel(), ends.ravel()]) if cost.changing else None
 
@@ -159,7 +159,7 @@ def _try_around(
     times: FloatArray,
     moving: IntArray,
     size: FloatArray,
-    cost: LegCost,
+    cost: SectionCost,
     clearance: Clearance,
     sweep: int,
 ) -> BoolArray:

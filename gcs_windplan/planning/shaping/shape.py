@@ -6,18 +6,17 @@ from typing import Final
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.flight.wind_limits import SPARE
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.planning.shaping.relax import relax, settle
 from gcs_windplan.planning.shaping.shorten import shorten
 from gcs_windplan.scene import Clearance
 
-_FREE: Final = ("time", "distance", "energy")  # costs under which vertices may leave the graph
 _CLOSER: Final = (1, 4, 16)  # times the wind's own sampling, one after the other, where that has missed something
 _CLOSEST: Final = 256  # times the same, for the comparison: finer than what vertices have moved under
 _ROUNDING: Final = 1e-9
 
 
-def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
+def shape(points: FloatArray, cost: SectionCost, clearance: Clearance) -> FloatArray:
     """Few and good waypoints (m, 3) out of a graph's path (n, 3), never dearer than it in the chosen cost.
 
     Time, distance and energy are measured along any route, so vertices may leave the graph. The paper's angle and
@@ -27,7 +26,7 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
     Where the wind jumps, a leg may pass through the bad side of the jump between two samples, and relaxing would
     collect such legs. So the result is compared with the path under closer sampling, and relaxed under that if need be.
     """
-    if cost.choice.name not in _FREE:
+    if not cost.choice.leg_cost.leaves_graph:
         return shorten(points, cost, clearance)
     closest = cost.with_spare(SPARE / 2).closer(_CLOSEST)  # what is found between samples goes there
     limit = closest.of_polyline(points) * (1 + _ROUNDING)
@@ -40,14 +39,14 @@ def shape(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray
     return points
 
 
-def shape_quickly(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
+def shape_quickly(points: FloatArray, cost: SectionCost, clearance: Clearance) -> FloatArray:
     """Few waypoints (m, 3) in a quarter of the time that `shape` takes: good enough to compare routes by.
 
     Shortened, and the waypoints that are left moved once; no more of them are tried, and the wind is not looked at more
     closely. Over the Jacksboro fault that is 0.4 % above what `shape` finds. Never dearer than the path.
     """
     shortened = shorten(points, cost, clearance)
-    if cost.choice.name not in _FREE:
+    if not cost.choice.leg_cost.leaves_graph:
         return shortened
     settled, price = settle(shortened, cost, clearance)
     return settled if price <= cost.of_polyline(shortened) else shortened

@@ -10,14 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.planning.cost import LegCost
+from gcs_windplan.planning.cost import SectionCost
 from gcs_windplan.scene import Clearance
 
 _MOST_LEGS = 8_000  # judged in one pass; the window narrows on long paths, and passes repeat
 _PENALTY = 2e-4  # what a waypoint more must gain, as a share of the path's cost
 
 
-def shorten(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArray:
+def shorten(points: FloatArray, cost: SectionCost, clearance: Clearance) -> FloatArray:
     """The cheapest polyline through some of a path's vertices, shape (m, 3) with m at most the path's n.
 
     Never worse than the path in the chosen cost: if the penalty on waypoints would make it so, it is dropped.
@@ -37,7 +37,7 @@ def shorten(points: FloatArray, cost: LegCost, clearance: Clearance) -> FloatArr
     return points
 
 
-def _best_subset(points: FloatArray, cost: LegCost, clearance: Clearance, penalty: float) -> IntArray:
+def _best_subset(points: FloatArray, cost: SectionCost, clearance: Clearance, penalty: float) -> IntArray:
     """The vertices of the cheapest polyline from first to last, each leg spanning at most a window of vertices."""
     n = len(points)
     window = max(2, min(n - 1, _MOST_LEGS // n))

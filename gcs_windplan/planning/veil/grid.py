@@ -25,6 +25,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FlagArray, FloatArray, IntArray, MaskArray
 from gcs_windplan.cores import spread
 from gcs_windplan.errors import InputError
+from gcs_windplan.progress import UNTRACKED, Tracker
 from gcs_windplan.scene.clearance import TOO_WINDY, Clearance
 from gcs_windplan.terrain import Extent
 
@@ -104,7 +105,13 @@ class GridVeil:
 
 
 def lay_grid(
-    clearance: Clearance, area: Extent, spacing: float, layers: Sequence[float], neighbours: int = 16
+    clearance: Clearance,
+    area: Extent,
+    spacing: float,
+    layers: Sequence[float],
+    neighbours: int = 16,
+    *,
+    tracker: Tracker = UNTRACKED,
 ) -> GridVeil:
     """Lay a uniform veil over an area, each layer at its height above ground [m], and judge every leg once."""
     columns = 1 + math.floor((area.east - area.west) / spacing + 1e-9)
@@ -125,7 +132,9 @@ def lay_grid(
     def judge(strip: _Strip) -> tuple[_Strip, BoolArray]:
         return strip, clearance.breaches(*_legs(corner, spacing, heights, strip)) == 0
 
-    for strip, clear in spread(judge, _strips(heights.shape, steps[: len(steps) // 2])):
+    strips = list(_strips(heights.shape, steps[: len(steps) // 2]))
+    for done, (strip, clear) in enumerate(spread(judge, strips)):
+        tracker.at("laying the graph", done, len(strips))
         part = legal[strip.layer, strip.rows, strip.columns]
         part |= np.left_shift(clear.reshape(part.shape), strip.number, dtype=bits)
     return GridVeil(corner, spacing, heights, steps, legal.ravel(), clearance)

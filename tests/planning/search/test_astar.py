@@ -11,7 +11,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from gcs_windplan.errors import NoRouteError
-from gcs_windplan.planning.cost import CostChoice, LegCost, enclosing_ball
+from gcs_windplan.planning.cost import CostChoice, SectionCost, enclosing_ball
 from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.terrain import Dem
@@ -67,7 +67,7 @@ def test_time_on_grid_equals_dijkstra(neighbours, model, seed):
     windy = sample_wind(veil, wind)
     points = windy.points
     start, goal = points[0], points[veil.size - 1]
-    cost = LegCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
+    cost = SectionCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
     expected = _dijkstra(points, windy.steady.winds, _grid_legs(veil), cost.choice, vehicle, 0, veil.size - 1)
     if math.isinf(expected):
         with pytest.raises(NoRouteError):
@@ -106,7 +106,7 @@ def test_time_equals_dijkstra_where_the_wind_is_not_known_everywhere(neighbours,
     assert len(known) < veil.size
     first, last = int(known[0]), int(known[-1])
     start, goal = windy.points[first], windy.points[last]
-    cost = LegCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
+    cost = SectionCost(CostChoice("time"), wind, vehicle, veil.edge_length, 1.0)
     legs = np.concatenate([_grid_legs(veil), _site_legs(veil, start, first), _site_legs(veil, goal, last)])
     expected = _dijkstra(
         windy.points, np.nan_to_num(windy.steady.winds, nan=99.0), legs, cost.choice, vehicle, first, last
@@ -135,7 +135,7 @@ def test_roadmap_equals_dijkstra(name, model, seed):
     wind = WavyWind(seed + 100, strength=7.0, rising=0.5)
     vehicle = Vehicle(10.0, speed_model=model)
     windy = sample_wind(veil, wind)
-    cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 1.0)
+    cost = SectionCost(CostChoice(name), wind, vehicle, veil.edge_length, 1.0)
     legs = np.concatenate([veil.pairs[veil.flags == 0], veil.pairs[veil.flags == 0][:, ::-1]])
     expected = _dijkstra(veil.points, windy.steady.winds, legs, cost.choice, vehicle, 0, 1)
     if math.isinf(expected):
@@ -157,7 +157,7 @@ def test_the_papers_costs_are_what_their_path_adds_up_to(name, seed):
     veil = lay_prm(rules_over(dem), AREA, 250, seed, (50.0,), np.stack([start, goal]))
     wind, vehicle = WavyWind(seed, strength=4.0), Vehicle(10.0)
     windy = sample_wind(veil, wind)
-    cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0)
+    cost = SectionCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0)
     found = find_path(windy, cost, start, goal)
     at = wind.at(found.points)
     own = [
@@ -174,7 +174,7 @@ def test_same_input_same_path():
     dem = rough_dem(3)
     veil = lay_grid(rules_over(dem), AREA, 60.0, (40.0, 80.0), 16)
     windy = sample_wind(veil, WavyWind(3))
-    cost = LegCost(CostChoice("time"), WavyWind(3), Vehicle(10.0), veil.edge_length, 1.0)
+    cost = SectionCost(CostChoice("time"), WavyWind(3), Vehicle(10.0), veil.edge_length, 1.0)
     start, goal = over_ground(dem, -733, -811, 40), over_ground(dem, 812, 777, 60)
     one, two = (find_path(windy, cost, start, goal) for _ in range(2))
     assert one.cost == two.cost
@@ -207,7 +207,7 @@ def _wall(relief: float) -> Dem:
 def test_no_route_names_what_cuts(reason, dem, maximum, strength):
     veil = lay_grid(rules_over(dem, maximum=maximum), AREA, 100.0, (60.0,), 8)
     wind = WavyWind(1, strength=strength)
-    cost = LegCost(CostChoice("time"), wind, Vehicle(8.0), veil.edge_length, 1.0)
+    cost = SectionCost(CostChoice("time"), wind, Vehicle(8.0), veil.edge_length, 1.0)
     with pytest.raises(NoRouteError, match=reason) as caught:
         find_path(sample_wind(veil, wind), cost, over_ground(dem, 0, -800, 60), over_ground(dem, 0, 800, 60))
     assert reason in next(iter(caught.value.cuts))

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import dijkstra
 from gcs_windplan.flight.sampling import performance_of
 from gcs_windplan.kernels.best_first import search_csr
 from gcs_windplan.kernels.edges import Setting, edge_between, remaining
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import Calm
 
@@ -27,7 +27,7 @@ rounding = 1e-9
 
 def both_bounds(vehicle: Vehicle, winds: np.ndarray, goal: np.ndarray) -> dict[str, Setting]:
     """h1 is h2 about no wind at all."""
-    cost = LegCost(CostChoice("time"), Calm(), vehicle, 1.0, 1.0)
+    cost = SectionCost(CostChoice("time"), Calm(), vehicle, 1.0, 1.0)
     h2 = cost.setting(goal, winds)
     strongest = float(np.hypot(winds[:, 0], winds[:, 1]).max())
     return {"h1": h2._replace(ball_e=0.0, ball_n=0.0, ball_radius=strongest), "h2": h2}

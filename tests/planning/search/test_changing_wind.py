@@ -10,7 +10,7 @@ import pytest
 
 from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight import fly_legs
-from gcs_windplan.planning.cost import CostChoice, LegCost, rank_of
+from gcs_windplan.planning.cost import CostChoice, SectionCost, rank_of
 from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.vehicle import Vehicle
@@ -44,7 +44,7 @@ def test_on_small_roadmaps_it_equals_brute_force_over_all_paths(seed, begin, ris
     wind = ShiftingWind((seed, seed + 50, seed + 90), (-60.0, 300.0, 1500.0), strength=6.0, rising=rising)
     vehicle = Vehicle(10.0)
     expected = best_of_all_paths(veil.size, legs, edge_lasting(vehicle, points, wind), begin)
-    cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0, begin)
+    cost = SectionCost(TIME, wind, vehicle, veil.edge_length, 1.0, begin)
     found = find_path(sample_wind(veil, wind), cost, start, goal, begin)
     assert found.cost == pytest.approx(expected, rel=1e-7)
 
@@ -55,7 +55,7 @@ def test_waiting_on_the_way_does_not_arrive_earlier(seed):
     veil, start, goal, points, legs = roadmap(seed, nodes=6)
     wind = ShiftingWind((seed, seed + 50), (0.0, 600.0), strength=6.0)
     vehicle = Vehicle(10.0)
-    cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0)
+    cost = SectionCost(TIME, wind, vehicle, veil.edge_length, 1.0)
     found = find_path(sample_wind(veil, wind), cost, start, goal)
     step = 0.5
     waited = best_with_waiting(veil.size, legs, edge_lasting(vehicle, points, wind), 0.0, step)
@@ -71,7 +71,7 @@ def test_on_a_grid_it_beats_no_bound_and_equals_it(seed):
     wind = ShiftingWind((seed, seed + 7), (0.0, 500.0), strength=6.0)
     windy, vehicle = sample_wind(veil, wind), Vehicle(11.0)
 
-    class Unbounded(LegCost):
+    class Unbounded(SectionCost):
         __slots__ = ()
 
         def estimates(self, points, start, goal, setting):
@@ -79,7 +79,7 @@ def test_on_a_grid_it_beats_no_bound_and_equals_it(seed):
 
     start, goal = veil.points[0], veil.points[veil.size - 1]
     arguments = (TIME, wind, vehicle, veil.edge_length, 1.0)
-    bounded = find_path(windy, LegCost(*arguments), start, goal)
+    bounded = find_path(windy, SectionCost(*arguments), start, goal)
     free = find_path(windy, Unbounded(*arguments), start, goal)
     assert bounded.cost == pytest.approx(free.cost, rel=EXACT)
     assert bounded.expanded < free.expanded
@@ -93,7 +93,7 @@ def test_a_wind_that_does_not_change_is_found_as_the_steady_one():
     steady = replace(changing, knots=(0.0,))  # one time alone: steady
     costs = []
     for wind in (changing, steady):
-        cost = LegCost(TIME, wind, vehicle, veil.edge_length, 1.0)
+        cost = SectionCost(TIME, wind, vehicle, veil.edge_length, 1.0)
         windy = sample_wind(veil, wind) if wind is changing else sample_wind(veil, _Frozen(changing))
         costs.append(find_path(windy, cost, start, goal).cost)
     assert costs[0] == pytest.approx(costs[1], rel=EXACT)
@@ -121,7 +121,7 @@ def test_every_cost_finds_a_way_that_can_be_flown(name):
     veil = lay_grid(rules_over(dem, maximum=110.0), AREA, 150.0, (40.0, 70.0), 16)
     wind = ShiftingWind((5, 6), (0.0, 700.0), strength=5.0)
     start, goal = veil.points[0], veil.points[veil.size - 1]
-    cost = LegCost(CostChoice(name), wind, Vehicle(12.0), veil.edge_length, 2000.0)
+    cost = SectionCost(CostChoice(name), wind, Vehicle(12.0), veil.edge_length, 2000.0)
     found = find_path(sample_wind(veil, wind), cost, start, goal)
     assert np.isfinite(fly_legs(found.points, wind, Vehicle(12.0))[1]).all()
 
@@ -144,7 +144,7 @@ def test_beyond_the_forecast_there_is_no_route_and_the_error_says_so():
     dem = rough_dem(1)
     veil = lay_grid(rules_over(dem, maximum=110.0), AREA, 150.0, (40.0, 70.0), 16)
     wind = ShiftingWind((1, 2), (0.0, 60.0))
-    cost = LegCost(TIME, wind, Vehicle(12.0), veil.edge_length, 1.0)
+    cost = SectionCost(TIME, wind, Vehicle(12.0), veil.edge_length, 1.0)
     with pytest.raises(NoRouteError, match="longer than the forecast reaches"):
         find_path(sample_wind(veil, wind), cost, veil.points[0], veil.points[veil.size - 1])
 
@@ -156,7 +156,7 @@ def test_more_of_the_forecast_is_sampled_only_where_the_flight_lasts_so_long():
     calm = ShiftingWind((1, 2, 3, 4, 5), (0.0, 300.0, 1500.0, 3000.0, 9000.0), strength=1.0)
     windy = sample_wind(veil, calm)
     start, goal = veil.points[0], veil.points[veil.size - 1]
-    find_path(windy, LegCost(TIME, calm, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
+    find_path(windy, SectionCost(TIME, calm, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
     assert windy.sampled == (0.0, 300.0, 1500.0)
 
     @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def test_more_of_the_forecast_is_sampled_only_where_the_flight_lasts_so_long():
 
     against = Headwind(calm.seeds, calm.knots, strength=0.2)
     windy = sample_wind(veil, against)
-    found = find_path(windy, LegCost(TIME, against, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
+    found = find_path(windy, SectionCost(TIME, against, Vehicle(12.0), veil.edge_length, 1.0), start, goal)
     assert found.cost > 1000.0
     assert len(windy.sampled) > 3
 
@@ -184,7 +184,7 @@ def test_over_members_an_edge_costs_the_quantile(quantile):
 
     expected = best_of_all_paths(veil.size, legs, lasting, 0.0)
     assert math.isfinite(expected)
-    cost = LegCost(TIME, members[0], vehicle, veil.edge_length, 1.0, 0.0, members, quantile)
+    cost = SectionCost(TIME, members[0], vehicle, veil.edge_length, 1.0, 0.0, members, quantile)
     found = find_path(sample_wind(veil, members[0], members), cost, start, goal)
     assert found.cost == pytest.approx(expected, rel=1e-7)
 

@@ -16,7 +16,7 @@ from gcs_windplan.errors import InputError, NoRouteError
 from gcs_windplan.flight.sampling import performance_of
 from gcs_windplan.kernels.edges import edge_between
 from gcs_windplan.kernels.power import watts_at
-from gcs_windplan.planning.cost import CostChoice, LegCost
+from gcs_windplan.planning.cost import CostChoice, SectionCost
 from gcs_windplan.planning.cost.bounds import least_prices
 from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.veil import lay_grid, lay_prm
@@ -35,7 +35,7 @@ WING = FixedWing(11.0, 0.55, 15.2445, 0.9, 0.043, 0.678, stall_airspeed=14.0)
 MODELS = {"quadcopter": QUADCOPTER, "helicopter": HELICOPTER}
 
 
-def pair_energies(cost: LegCost, points, winds, pairs):
+def pair_energies(cost: SectionCost, points, winds, pairs):
     """Independent prices of directed edges."""
     watts = naive_table(cost.power)
     return np.array(
@@ -61,9 +61,9 @@ def dijkstra_cost(costs, pairs, size: int, start: int, goal: int) -> float:
     return float(dijkstra(graph.tocsr(), indices=start)[goal])
 
 
-def energy_cost(wind, vehicle, power, airspeeds, edge: float, cost_index: float = 0.0) -> LegCost:
+def energy_cost(wind, vehicle, power, airspeeds, edge: float, cost_index: float = 0.0) -> SectionCost:
     grid = tabulate(power, vehicle, np.array(airspeeds), (0.0, 200.0), cost_index)
-    return LegCost(CostChoice("energy"), wind, vehicle, edge, 1.0, power=grid)
+    return SectionCost(CostChoice("energy"), wind, vehicle, edge, 1.0, power=grid)
 
 
 @pytest.mark.parametrize("airspeeds", [(9.0,), (6.0, 9.0, 12.0, 15.0)], ids=["one", "free"])
@@ -175,7 +175,7 @@ def test_the_table_is_the_model(model):
 
 def test_no_energy_without_power():
     with pytest.raises(InputError, match="name its `airframe`"):
-        LegCost(CostChoice("energy"), Calm(), Vehicle(10.0), 1.0, 1.0)
+        SectionCost(CostChoice("energy"), Calm(), Vehicle(10.0), 1.0, 1.0)
 
 
 def test_wind_too_strong_for_every_airspeed_is_no_route():

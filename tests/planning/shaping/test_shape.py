@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs_windplan.planning.cost import COST_NAMES, CostChoice, LegCost
+from gcs_windplan.planning.cost import COSTS, CostChoice, SectionCost
 from gcs_windplan.planning.search import find_path, sample_wind
 from gcs_windplan.planning.shaping import relax, shape, shorten, thin
 from gcs_windplan.planning.veil import lay_grid
@@ -27,7 +27,7 @@ QUADCOPTER = Multirotor(4.21, 0.99545857, 100.0, 2.06852797, 0.02745631, 0.01473
 
 
 @settings(max_examples=12, deadline=None)
-@given(seed=st.integers(0, 1000), name=st.sampled_from(COST_NAMES), strength=st.floats(0, 7))
+@given(seed=st.integers(0, 1000), name=st.sampled_from(list(COSTS)), strength=st.floats(0, 7))
 def test_never_worse_than_the_graph_and_always_clear(seed, name, strength):
     dem = rough_dem(seed, relief=80.0)
     rules = Clearance(dem, 25.0, 110.0)
@@ -35,7 +35,7 @@ def test_never_worse_than_the_graph_and_always_clear(seed, name, strength):
     wind = WavyWind(seed, strength=strength)
     vehicle = Vehicle(12.0)
     power = tabulate(QUADCOPTER, vehicle, np.array([8.0, 12.0, 16.0]), (0.0, 300.0)) if name == "energy" else None
-    cost = LegCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0, power=power)
+    cost = SectionCost(CostChoice(name), wind, vehicle, veil.edge_length, 2000.0, power=power)
     path = find_path(
         sample_wind(veil, wind), cost, over_ground(dem, -800, -700, 40), over_ground(dem, 750, 800, 60)
     ).points
@@ -52,7 +52,7 @@ def test_a_staircase_becomes_a_straight_line():
     stairs = np.array([(x, y, 30.0) for i in range(10) for x, y in ((10.0 * i, 10.0 * i), (10.0 * i + 10, 10.0 * i))])
     stairs = np.vstack([stairs, (100.0, 100.0, 30.0)])
     rules = Clearance(rough_dem(1, relief=0.0), 20.0)
-    cost = LegCost(CostChoice("distance"), Calm(), Vehicle(10.0), 10.0, 140.0)
+    cost = SectionCost(CostChoice("distance"), Calm(), Vehicle(10.0), 10.0, 140.0)
     shaped = shape(stairs, cost, rules)
     assert len(shaped) == 2
     assert cost.of_polyline(shaped) == pytest.approx(math.hypot(100, 100))
@@ -62,7 +62,7 @@ def test_thin_keeps_to_its_limit():
     rng = np.random.default_rng(1)
     points = np.column_stack([np.arange(30) * 20.0 - 300, rng.normal(0, 5, 30), np.full(30, 40.0)])
     rules = Clearance(rough_dem(1, relief=0.0), 20.0)
-    cost = LegCost(CostChoice("distance"), Calm(), Vehicle(10.0), 10.0, 600.0)
+    cost = SectionCost(CostChoice("distance"), Calm(), Vehicle(10.0), 10.0, 600.0)
     limit = 1.1 * cost.of_polyline(points)
     thinned = thin(points, cost, rules, limit)
     assert 2 <= len(thinned) < len(points)
@@ -72,7 +72,7 @@ def test_thin_keeps_to_its_limit():
 def test_relax_leaves_an_unflyable_line_alone():
     line = np.array([[-100.0, 0, 40], [0, 10, 40], [100, 0, 40]])
     rules = Clearance(rough_dem(1, relief=0.0), 20.0)
-    cost = LegCost(CostChoice("time"), WavyWind(1, strength=90.0), Vehicle(1.0), 10.0, 200.0)
+    cost = SectionCost(CostChoice("time"), WavyWind(1, strength=90.0), Vehicle(1.0), 10.0, 200.0)
     assert (relax(line, cost, rules) == line).all()
 
 
@@ -94,7 +94,7 @@ def test_shaping_gains_nothing_from_what_lies_between_two_samples():
     rules = Clearance(Dem.local(np.full((9, 9), -10.0), -4.0, 4.0, 1.0), 1.0)
     vehicle = Vehicle(2.0, 9.0, 9.0)
     veil = lay_grid(rules, Extent(-2, -2, 2, 2), 0.04, (10.0,), 16)
-    cost = LegCost(CostChoice("time"), Disc(), vehicle, veil.edge_length, 5.0)
+    cost = SectionCost(CostChoice("time"), Disc(), vehicle, veil.edge_length, 5.0)
     path = find_path(sample_wind(veil, Disc()), cost, start, goal).points
     shaped = shape(path, cost, rules)
     assert _true_seconds(shaped, vehicle) <= _true_seconds(path, vehicle) * 1.001

@@ -1,19 +1,10 @@
-"""The costs that a route is chosen by.
-
-In the search an edge costs what the kernels in `kernels/edges.py` say. For legs of any length, as shaping makes
-them, each cost has a form that adds up along a polyline. For distance and time that is the same measure. The paper's
-angle is counted once an edge, however long: a single leg against the wind would be "better" than ten short ones down
-it. So here a leg costs its mean angle times its length in ordinary edges; and hybrid, in which the paper's search
-counts distance only as what remains to the goal, adds the leg's length as a share of the straight line. By that
-measure shaping compares; it is not the number that A* adds up.
-"""
+"""A cost at work on one section of a route, between two sites."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -30,49 +21,16 @@ from gcs_windplan.flight.sampling import (
 from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits
 from gcs_windplan.kernels import edges as kernel
 from gcs_windplan.kernels.power import PowerGrid, integrate_prices
-from gcs_windplan.kernels.triangle import Performance, mean_angles
+from gcs_windplan.kernels.triangle import Performance
 from gcs_windplan.planning.cost.bounds import least_prices
+from gcs_windplan.planning.cost.choice import CostChoice
+from gcs_windplan.planning.cost.leg_costs import LegFigures
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.field import WindField
 
-CostName: TypeAlias = Literal["distance", "angle", "hybrid", "time", "energy"]
-COST_NAMES: tuple[CostName, ...] = ("distance", "angle", "hybrid", "time", "energy")
-
-_ESTIMATE_SAMPLES = 16
-_ESTIMATE_BATCH = 50_000  # nodes at a time, so that memory stays bounded
-
-_CODES = {
-    "distance": kernel.DISTANCE,
-    "angle": kernel.ANGLE,
-    "hybrid": kernel.HYBRID,
-    "time": kernel.TIME,
-    "energy": kernel.ENERGY,
-}
-
-
-@dataclass(frozen=True, slots=True)
-class CostChoice:
-    """Which cost, with the weights of the hybrid one (11)."""
-
-    name: CostName = "time"
-    distance: float = 0.1
-    angle: float = 0.9
-
-    def __post_init__(self) -> None:
-        if self.name not in COST_NAMES:
-            raise InputError(Problem(f"'{self.name}' is no cost, choose {', '.join(COST_NAMES)}", "cost"))
-        weights = (self.distance, self.angle)
-        if not all(math.isfinite(w) and w >= 0 for w in weights) or sum(weights) == 0:
-            raise InputError(Problem("the weights of hybrid must be 0 or more, and not both 0", "cost"))
-
-    def __str__(self) -> str:
-        if self.name == "hybrid":
-            return f"hybrid (distance {self.distance:g}, angle {self.angle:g})"
-        return self.name
-
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LegCost:
+class SectionCost:
     """A cost at work: for one vehicle in one wind, between two sites.
 
     `edge_length` is the length of an ordinary edge of the veil, `straight` that of the line from start to goal [m];
@@ -98,8 +56,8 @@ class LegCost:
     limits: WindLimits = NO_LIMITS
 
     def __post_init__(self) -> None:
-        if self.choice.name == "energy" and self.power is None:
-            raise InputError(Problem("energy asks for the vehicle's power: name its `airframe`", "cost"))
+        if self.choice.leg_cost.needs_power and self.power is None:
+            raise InputError(Problem(f"{self.choice} asks for the vehicle's power: name its `airframe`", "cost"))
 
     def of_legs(self, starts: FloatArray, ends: FloatArray, when: FloatArray | None = None) -> FloatArray:
         """The cost of straight legs (n, 3), shape (n,); infinite where one cannot be flown.
@@ -132,13 +90,13 @@ class LegCost:
             return self.waypoint_seconds * float(
                 np.median(self.power.watts[np.isfinite(self.power.watts)]) + self.power.cost_index
             )
-        return self.waypoint_seconds if self.choice.name == "time" else 0.0
+        return self.choice.leg_cost.waypoint_penalty(self.waypoint_seconds)
 
     def least_in(self, seconds: float) -> float:
         """What a way that lasts so long [s] costs at least."""
         if self.power is not None:
             return seconds * (float(self.power.watts.min()) + self.power.cost_index)
-        return seconds if self.choice.name == "time" else 0.0
+        return self.choice.leg_cost.least_in(seconds)
 
     @property
     def rank(self) -> int:
@@ -194,37 +152,33 @@ class LegCost:
 
     def _price(self, parts: LegIntegrals, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """What the chosen cost makes of legs (n,)."""
-        if self.choice.name == "time":
-            return parts.seconds
-        lengths = np.linalg.norm(ends - starts, axis=1)
-        angle = parts.angle / self.edge_length
-        match self.choice.name:
-            case "distance":
-                cost = lengths
-            case "angle":
-                cost = angle
-            case "hybrid":
-                cost = self.choice.angle * angle / math.pi + self.choice.distance * lengths / self.straight
-        return np.where(np.isfinite(parts.seconds), cost, np.inf)
+        vectors = ends - starts
+        legs = LegFigures(
+            parts.seconds, parts.angle, np.linalg.norm(vectors, axis=1), vectors[:, 2], self.edge_length, self.straight,
+            self.choice.angle, self.choice.distance,
+        )  # fmt: skip
+        return np.where(np.isfinite(parts.seconds), self.choice.leg_cost.price(legs), np.inf)
 
-    def closer(self, times: float) -> LegCost:
+    def closer(self, times: float) -> SectionCost:
         """The same cost, but the wind along a leg is looked at so many times more closely."""
         return replace(self, finer=self.finer * times)
 
-    def with_spare(self, spare: float) -> LegCost:
+    def with_spare(self, spare: float) -> SectionCost:
         """The same cost with another share of the limits of wind kept free."""
         return replace(self, limits=self.limits.with_spare(spare)) if self.limits else self
 
     def setting(self, goal: FloatArray, winds: FloatArray) -> kernel.Setting:
         """The search kernels' settings for a goal (3,) in the nodes' winds (..., 3), at all times, in all members."""
+        if winds.shape == (len(winds), 4):  # steady, with limits: nobody flies in stronger winds
+            winds = winds[~(winds[:, 3] > 1.0)]
         winds = winds.reshape(-1, winds.shape[-1])
         centre, radius = enclosing_ball(winds)
-        if radius > self.limits.wind:  # of stronger wind nobody makes use
+        if radius > self.limits.wind:  # nor where it changes, between two of its times
             centre, radius = np.zeros(2), self.limits.wind
         if self.vehicle.speed_model == "paper" and np.hypot(*centre) > 0.5 * (self.vehicle.airspeed + radius):
             centre, radius = np.zeros(2), float(np.fmax.reduce(np.hypot(winds[:, 0], winds[:, 1]), initial=0.0))
         return kernel.Setting(
-            code=kernel.ENERGY if self.power is not None else _CODES[self.choice.name],
+            code=kernel.ENERGY if self.power is not None else self.choice.leg_cost.code,
             goal_e=float(goal[0]),
             goal_n=float(goal[1]),
             goal_z=float(goal[2]),
@@ -241,24 +195,11 @@ class LegCost:
     def estimates(self, points: FloatArray, start: FloatArray, goal: FloatArray, setting: kernel.Setting) -> FloatArray:
         """The estimates from nodes (n, 3) to the goal (3,) where the kernels have none of their own, else empty.
 
-        Prices of energy have lower bounds (`bounds`), best along the way from the start (3,). `angle` needs its
-        estimates here as well: (10) takes the mean angle between the wind and the straight line to the goal, here at 16
-        places of that line. It overestimates routes of a single short edge, so A* with it is not optimal.
+        Prices of energy have lower bounds (`bounds`), best along the way from the start (3,).
         """
         if self.power is not None:
             return least_prices(points, setting, self.power, start)
-        if self.choice.name != "angle":
-            return np.empty(0)
-        estimates = np.zeros(len(points))
-        fractions = (np.arange(_ESTIMATE_SAMPLES) + 0.5) / _ESTIMATE_SAMPLES
-        for begin in range(0, len(points), _ESTIMATE_BATCH):
-            batch = points[begin : begin + _ESTIMATE_BATCH]
-            known = np.flatnonzero(np.isfinite(batch).all(axis=1))
-            vectors = goal - batch[known]
-            places = batch[known, None, :] + fractions[:, None] * vectors[:, None, :]
-            winds = np.ascontiguousarray(self.wind.at(places.reshape(-1, 3)))
-            estimates[begin + known] = mean_angles(np.ascontiguousarray(vectors), winds)
-        return estimates
+        return self.choice.leg_cost.estimates(self.wind, points, goal)
 
     def performance(self) -> Performance:
         """The vehicle as the kernels take it."""
