@@ -10,8 +10,9 @@ WindplanError
 │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
 ├── NoRouteError          all input is fine and yet no route exists: exit code 1
 │   └── BatteryError      the best route takes more than the battery may give
-└── LinkError             the link is dead or nobody answers, so that what the vehicle holds is unknown: exit code 4
-    └── RefusedError      the vehicle said no: exit code 3
+├── LinkError             the link is dead or nobody answers, so that what the vehicle holds is unknown: exit code 4
+│   └── RefusedError      the vehicle said no: exit code 3
+└── CancelledError        whoever started the work told it to stop
 """
 
 from __future__ import annotations
@@ -106,3 +107,7 @@ class LinkError(WindplanError):
 
 class RefusedError(LinkError):
     """The vehicle said no, or cannot do what was asked."""
+
+
+class CancelledError(WindplanError):
+    """The work was told to stop before it was done."""
