@@ -5,6 +5,7 @@ WindplanError
 │   ├── MissionFileError  the YAML mission file, every problem at once
 │   ├── TerrainError      a DEM or mesh that cannot be read or does not cover the place
 │   ├── WindError         a wind that cannot be read, has gaps or does not cover the place
+│   │   └── EnsembleError  a forecast of several members, of which none was chosen
 │   ├── FormatError       a .waypoints or .plan file
 │   ├── AddressError      a link's address that is wrong or in use
 │   └── RequestError      sites, limits and terrain contradict each other, every problem at once
@@ -18,8 +19,10 @@ WindplanError
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +61,12 @@ class InputError(WindplanError):
         self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
+    def told_as(self, problems: Sequence[Problem]) -> Self:
+        """The same error with its problems told otherwise: with another field, or a place in a file."""
+        told = copy(self)
+        InputError.__init__(told, problems)
+        return told
+
 
 class MissionFileError(InputError):
     """The mission file does not parse or breaks the schema."""
@@ -69,6 +78,22 @@ class TerrainError(InputError):
 
 class WindError(InputError):
     """Wind that cannot be read, has gaps, or does not cover the place or time."""
+
+
+class EnsembleError(WindError):
+    """A forecast of several members, of which none was chosen; `members` are their numbers."""
+
+    members: tuple[int, ...] = ()
+
+    @classmethod
+    def of(cls, members: Sequence[int]) -> Self:
+        """The error for an ensemble of these members, ascending."""
+        error = cls(
+            f"it holds an ensemble of {len(members)} members ({members[0]} to {members[-1]}): say `members: all`, or"
+            f" which, for example `members: [{members[0]}]`"
+        )
+        error.members = tuple(members)
+        return error
 
 
 class FormatError(InputError):
@@ -86,11 +111,13 @@ class RequestError(InputError):
 class NoRouteError(WindplanError):
     """No route exists from start to goal.
 
-    `cuts` counts the edges at the border of what could be reached, by what forbids them.
+    `cuts` counts the edges at the border of what could be reached, by what forbids them; `brief` is the reason in a few
+    words, for a table: the first sentence if nothing else is given.
     """
 
-    def __init__(self, message: str, cuts: dict[str, int]) -> None:
-        self.cuts = cuts
+    def __init__(self, message: str, cuts: dict[str, int] | None = None, brief: str = "") -> None:
+        self.cuts = {} if cuts is None else cuts
+        self.brief = brief or message.partition(". ")[0]
         super().__init__(message)
 
 

@@ -15,6 +15,7 @@ from gcs_windplan.cli.tables import mean_height, summary_lines
 from gcs_windplan.errors import MissionFileError
 from gcs_windplan.jobs.missionfile import parse_mission
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.paper.cases import CASES, make_rules, make_terrain, make_vehicle
 from gcs_windplan.paper.flying import SHAPED, fly_case, sites_of
 from gcs_windplan.paper.graphs import lay_uniform
@@ -36,7 +37,7 @@ def test_the_mission_shown_is_the_mission_shipped():
 
 def test_the_figures_shown_are_the_programs():
     """Within what rounding on another processor may change: vertices settle a little elsewhere."""
-    request = gw.read_mission(ROOT / "missions" / "jacksboro.yaml")
+    request = read_request(ROOT / "missions" / "jacksboro.yaml")
     plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES if name != "energy"])
     shown = re.search(r"^jacksboro, least time: (\d+) waypoints, ([\d.]+) km, (\d+):(\d\d) min", README, re.MULTILINE)
     assert shown is not None
@@ -55,7 +56,7 @@ def test_the_figures_shown_are_the_programs():
 
 
 def test_the_energies_shown_are_the_programs():
-    request = gw.read_mission(ROOT / "missions" / "shear.yaml")
+    request = read_request(ROOT / "missions" / "shear.yaml")
     plans = gw.plan_routes(request, [CostChoice("distance"), CostChoice("time"), CostChoice("energy")])
     table = README.split("$ gcs-windplan compare missions/shear.yaml")[1].split("```")[0]
     for plan in plans:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -14,10 +14,10 @@ import typer
 from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError, WindplanError
 
 if TYPE_CHECKING:
+    from gcs_windplan.jobs.transfers import Transfer
     from gcs_windplan.link.peer import Peer
-    from gcs_windplan.link.session import Session, Watch
     from gcs_windplan.link.verified import Part
-    from gcs_windplan.link.wire import MissionType
+    from gcs_windplan.progress import Progress, ProgressCallback
 
 EPILOG = (
     "ADDRESS is udpin:HOST:PORT (listen; the way simulators and most autopilots call in), udpout:HOST:PORT, "
@@ -76,28 +76,21 @@ def answering(verb: str, as_json: bool) -> Iterator[None]:
 
 
 @contextmanager
-def vehicle(
-    address: str, system: int | None, component: int | None, key_file: Path | None, timeout: float | None
-) -> Iterator[tuple[Session, Peer]]:
-    """A session at the address with the vehicle that it met."""
-    from gcs_windplan.link.session import open_session
-
-    with open_session(address, key_file=key_file, timeout=timeout) as session:
-        yield session, session.meet(system, component)
-
-
-@contextmanager
-def progress(label: str, quiet: bool) -> Iterator[Watch | None]:
+def progress(quiet: bool) -> Iterator[ProgressCallback | None]:
     """A bar on the terminal, None where standard error is none."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console
-    from rich.progress import Progress
+    from rich.progress import Progress as Bar
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total or None)
+    with Bar(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+
+        def show(step: Progress) -> None:
+            bar.update(task, description=step.stage, completed=step.done, total=step.total)
+
+        yield show
 
 
 def note(text: str) -> None:
@@ -105,22 +98,9 @@ def note(text: str) -> None:
     typer.echo(f"note: {text}", err=True)
 
 
-def verdict_of(parts: Sequence[Part]) -> str:
-    """The verdict on all parts: unknown if one is, else rejected if one is."""
-    verdicts = {part.outcome.verdict for part in parts}
-    return next(verdict for verdict in ("unknown", "rejected", "accepted") if verdict in verdicts)
-
-
-def report(
-    parts: Sequence[Part],
-    skipped: Sequence[MissionType],
-    peer: Peer,
-    verb: str,
-    as_json: bool,
-    more: dict[str, Any] | None = None,
-) -> None:
+def report(transfer: Transfer, verb: str, as_json: bool, more: dict[str, Any] | None = None) -> None:
     """Print how each part ended, and leave with the exit code; `more` is for the JSON object."""
-    verdict = verdict_of(parts)
+    parts, skipped, peer, verdict = transfer.parts, transfer.skipped, transfer.peer, transfer.verdict
     code = EXIT_CODES[verdict]
     if as_json:
         described = [_described(part) for part in parts]

@@ -14,12 +14,17 @@ if TYPE_CHECKING:
 
 
 def format_summary(plan: Plan) -> str:
-    """The plan as JSON: SI units, angles in degrees from true north, wind towards where it blows.
+    """The plan's figures as JSON."""
+    return json.dumps(summary_of(plan), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
-    `search` holds counts only: the same plan gives the same text, whatever the machine.
+
+def summary_of(plan: Plan) -> dict[str, Any]:
+    """The plan's figures: SI units, angles in degrees from true north, wind towards where it blows.
+
+    `search` holds counts only: the same plan gives the same figures, whatever the machine.
     """
     request = plan.request
-    summary: dict[str, Any] = {
+    return {
         "name": request.name,
         "cost": str(plan.choice),
         "cost_value": plan.cost,
@@ -44,7 +49,6 @@ def format_summary(plan: Plan) -> str:
             "path_vertices": plan.effort.vertices,
         },
     }
-    return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _ensemble(plan: Plan) -> dict[str, Any] | None:

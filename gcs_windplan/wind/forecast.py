@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.errors import WindError
+from gcs_windplan.errors import Problem, WindError
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.kernels.interpolation import LOG, POWER, Columns, Law
 from gcs_windplan.wind import pairing
@@ -106,7 +106,7 @@ def read_forecast(paths: Sequence[Path | str], wanted: Wanted) -> Forecast:
         except WindError as error:
             if str(error).startswith(tuple(map(str, files))):
                 raise
-            raise WindError(f"{', '.join(map(str, files))}: {error}") from error
+            raise error.told_as([Problem(f"{', '.join(map(str, files))}: {error}")]) from error
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from itertools import pairwise
 from typing import Literal, TypeAlias
 
-from gcs_windplan.errors import WindError
+from gcs_windplan.errors import EnsembleError, WindError
 from gcs_windplan.wind.sheets import Catalogue, Grid, Level, LevelKind, Quantity, Sheet
 
 #: All members, these ones, or None: there is to be no choice.
@@ -196,10 +196,7 @@ def _of_members(pairs: list[Pair], members: Members) -> list[Pair]:
     if members is None:
         if None in there:  # a deterministic forecast beside the ensemble
             return [pair for pair in pairs if pair.first.member is None]
-        raise WindError(
-            f"it holds an ensemble of {len(named)} members ({named[0]} to {named[-1]}): say `members: all`, or which,"
-            f" for example `members: [{named[0]}]`"
-        )
+        raise EnsembleError.of(named)
     wanted = set(named) if members == "all" else set(members)
     if missing := sorted(wanted - set(named)):
         raise WindError(f"it has no member {', '.join(map(str, missing))}, but {_few([str(m) for m in named])}")
