@@ -18,9 +18,10 @@ WindplanError
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal, Self, TypeAlias
 
 #: Why a wind is not known.
 WindReason: TypeAlias = Literal["area", "time", "members"]
@@ -62,6 +63,12 @@ class InputError(WindplanError):
         self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
+    def told_as(self, problems: Sequence[Problem]) -> Self:
+        """The same error with its problems told otherwise: with another field, or a place in a file."""
+        told = copy(self)
+        InputError.__init__(told, problems)
+        return told
+
 
 class MissionFileError(InputError):
     """The mission file does not parse or breaks the schema."""
@@ -93,7 +100,7 @@ class WindError(InputError):
         if any(problem.file for problem in self.problems):
             return self
         name = Path(", ".join(map(str, files)))
-        return WindError([replace(problem, file=name) for problem in self.problems], self.reason, self.members)
+        return self.told_as([replace(problem, file=name) for problem in self.problems])
 
 
 class FormatError(InputError):
@@ -111,11 +118,13 @@ class RequestError(InputError):
 class NoRouteError(WindplanError):
     """No route exists from start to goal.
 
-    `cuts` counts the edges at the border of what could be reached, by what forbids them.
+    `cuts` counts the edges at the border of what could be reached, by what forbids them; `brief` is the reason in a few
+    words, for a table: the first sentence if nothing else is given.
     """
 
-    def __init__(self, message: str, cuts: dict[str, int]) -> None:
-        self.cuts = cuts
+    def __init__(self, message: str, cuts: dict[str, int] | None = None, brief: str = "") -> None:
+        self.cuts = {} if cuts is None else cuts
+        self.brief = brief or message.partition(". ")[0]
         super().__init__(message)
 
 

@@ -12,6 +12,7 @@ import rasterio
 from rasterio.warp import transform
 
 import gcs_windplan as gw
+from gcs_windplan.jobs.requests import read_request
 
 half_a_decimetre_per_second = 0.05
 
@@ -53,7 +54,7 @@ departure: 2017-06-03T19:00Z
 def plan(tmp_path: Path, text: str, **values) -> gw.Plan:
     path = tmp_path / "mission.yaml"
     path.write_text(text.format(**values))
-    return gw.plan_route(gw.read_mission(path))
+    return gw.plan_route(read_request(path))
 
 
 def pixel_heights(dem: Path, latitudes, longitudes) -> np.ndarray:

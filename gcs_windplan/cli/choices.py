@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 if TYPE_CHECKING:
-    from gcs_windplan.planning.request import Request
+    from gcs_windplan.jobs.mission import Mission
 
 MissionFile: TypeAlias = Annotated[Path, typer.Argument(metavar="MISSION.yaml", help="The mission file.")]
 Airspeed: TypeAlias = Annotated[
@@ -21,35 +22,42 @@ Folder: TypeAlias = Annotated[
 ]
 
 
-def read_request(
-    mission: Path, airspeed: str | None, departure: datetime | None = None, lasting: float | None = None
-) -> Request:
-    """The request of a mission file, with the command line's airspeed and departure; `lasting` [s] as in it."""
-    from gcs_windplan.errors import InputError, Problem
+def option_name(name: str) -> str:
+    """How the command line calls what the library asks for: `max_gust` is `--max-gust`."""
+    return f"--{name.replace('_', '-')}"
+
+
+@contextmanager
+def options_named() -> Iterator[None]:
+    """Errors about what the library was asked in words name the option that said it."""
+    from gcs_windplan.errors import InputError
+
+    try:
+        yield
+    except InputError as error:
+        named = [
+            replace(one, field=option_name(one.field)) if one.field is not None and one.file is None else one
+            for one in error.problems
+        ]
+        raise error.told_as(named) from None
+
+
+def read_mission(file: Path, airspeed: str | None) -> Mission:
+    """The mission in a mission file, with the command line's airspeed."""
     from gcs_windplan.jobs.missionfile import read_mission
-    from gcs_windplan.jobs.missionfile.values import AIRSPEED_OR_FREE, FREE
 
-    speed = None
-    if airspeed is not None:
-        try:
-            speed = AIRSPEED_OR_FREE.read(airspeed)
-        except ValueError as error:
-            raise InputError(Problem(str(error), "--airspeed")) from None
-    request = read_mission(mission, departure) if lasting is None else read_mission(mission, departure, lasting)
-    if speed is None:
-        return request
-    if speed == FREE:
-        if request.airframe is None:
-            raise InputError(Problem("to be free to choose asks for the mission's vehicle.airframe", "--airspeed"))
-        return replace(request, free_airspeed=True)
-    return replace(request, vehicle=replace(request.vehicle, airspeed=float(speed)), free_airspeed=False)
+    mission = read_mission(file)
+    if airspeed is None:
+        return mission
+    with options_named():
+        return replace(mission, airspeed=airspeed)
 
 
-def output_folder(folder: Path | None, request: Request) -> Path:
+def output_folder(folder: Path | None, name: str) -> Path:
     """The folder to write into, made if need be."""
     from gcs_windplan.errors import InputError, Problem
 
-    chosen = folder if folder is not None else Path("out") / file_stem(request)
+    chosen = folder if folder is not None else Path("out") / file_stem(name)
     try:
         chosen.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -57,6 +65,6 @@ def output_folder(folder: Path | None, request: Request) -> Path:
     return chosen
 
 
-def file_stem(request: Request) -> str:
-    """The mission's name as the name of files."""
-    return request.name.strip().lower().replace(" ", "_")
+def file_stem(name: str) -> str:
+    """A mission's name as the name of files."""
+    return name.strip().lower().replace(" ", "_")

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import typer
 
 from gcs_windplan.cli import linking
 
-if TYPE_CHECKING:
-    from gcs_windplan.link.verified import TransferPart
-    from gcs_windplan.mission.firmware import MissionType
-
 HELP = "Delete a vehicle's mission, fence or rally points, and read back that nothing is left (but ArduPilot's home)."
-
-_ALL: tuple[MissionType, ...] = ("mission", "fence", "rally")
 
 
 def clear(
@@ -27,14 +21,10 @@ def clear(
     verify: Annotated[bool, typer.Option("--verify/--no-verify", help="Look whether it is gone, or believe.")] = True,
     as_json: linking.Json = False,
 ) -> None:
-    """Delete type after type, until one is not accepted."""
-    wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
-    parts: list[TransferPart] = []
-    with linking.answering("clear", as_json), linking.vehicle(on, sysid, compid, sign, timeout) as (session, peer):
-        from gcs_windplan.link.verified import clear_items
+    """Delete and report."""
+    from gcs_windplan.jobs.transfers import Vehicles
+    from gcs_windplan.jobs.transfers import clear as clear_vehicle
 
-        for kind in wanted:
-            parts.append(clear_items(session, peer, kind, verify=verify))
-            if parts[-1].outcome.verdict != "accepted":
-                break
-    linking.report(parts, wanted[len(parts) :], peer, "clear", as_json)
+    with linking.answering("clear", as_json):
+        transfer = clear_vehicle(Vehicles(on, sysid, compid, sign, timeout), kinds, verify=verify)
+    linking.report(transfer, "clear", as_json)

@@ -66,8 +66,7 @@ def _energy_of(one: Departure) -> str:
 def _last(one: Departure, longest: float) -> str:
     """A bar as long as the flight, or why there is none."""
     if not one.feasible or one.seconds is None:
-        reason = (one.reason or "").split(", and what leads on is ")[-1].split(". ")[0]
-        return "no: " + reason.removeprefix("no route: ").removeprefix("cut by ").split(" (limits.")[0]
+        return f"no: {one.brief or one.reason}"
     return "█" * max(1, round(_BAR * one.seconds / longest))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -11,9 +10,7 @@ import typer
 from gcs_windplan.cli import linking
 
 if TYPE_CHECKING:
-    from gcs_windplan.link.comparison import Comparison
-    from gcs_windplan.mission import Mission, MissionItem
-    from gcs_windplan.vehicle import Autopilot
+    from gcs_windplan.jobs.diff import MissionDiff
 
 HELP = """Compare two missions: what was planned and what a vehicle gave back, in either order.
 
@@ -31,106 +28,37 @@ def diff(
     as_json: linking.Json = False,
 ) -> None:
     """Read both, compare, report."""
-    first, second = _read(one), _read(other)
-    firmware = autopilot or _agreed(first.autopilot, second.autopilot)
-    kinds = {mission.vehicle_type for mission in (first, second)} - {None} or {None}
-    comparisons = {
-        "mission": max(  # of two kinds of vehicles, the stricter rules
-            (_compared(first.items, second.items, "mission", firmware, kind) for kind in sorted(kinds, key=str)),
-            key=lambda comparison: len(comparison.differences),
-        )
-    }
-    if firmware is None:
-        comparisons["mission"] = _with_home(comparisons["mission"], first, second)
-    if ".plan" == one.suffix.lower() == other.suffix.lower():
-        from gcs_windplan.mission import fence_items, rally_items
+    from gcs_windplan.jobs.diff import diff as compare_missions
 
-        fences = fence_items(first.fence), fence_items(second.fence)
-        rallies = rally_items(first.rally), rally_items(second.rally)
-        comparisons["fence"] = _compared(*fences, "fence", firmware, None)
-        comparisons["rally"] = _compared(*rallies, "rally", firmware, None)
-    else:
-        _note_fences(first, second)
-    _report(comparisons, firmware, as_json)
-
-
-def _agreed(one: Autopilot | None, other: Autopilot | None) -> Autopilot | None:
-    """The autopilot that the files name; None where they name two."""
-    if one is not None and other is not None and one != other:
-        linking.note("the files name different autopilots: every number counts")
-        return None
-    return one or other
-
-
-def _read(file: Path) -> Mission:
-    from gcs_windplan.formats import read_mission
-
-    read = read_mission(file)
-    for repair in read.repairs:
-        linking.note(f"{file}: {repair}")
-    return read.mission
-
-
-def _compared(
-    ours: tuple[MissionItem, ...],
-    theirs: tuple[MissionItem, ...],
-    kind: Literal["mission", "fence", "rally"],
-    autopilot: Autopilot | None,
-    vehicle_type: Literal["multicopter", "fixed-wing"] | None,
-) -> Comparison:
-    from gcs_windplan.link.comparison import compare_either_way
-    from gcs_windplan.mission.firmware import known_firmware
-
-    firmware = known_firmware(autopilot, vehicle_type)
-    return compare_either_way(ours, theirs, mission_type=kind, firmware=firmware)
-
-
-def _with_home(comparison: Comparison, first: Mission, second: Mission) -> Comparison:
-    """The comparison with home, which no firmware takes from a mission, and which counts where none is named."""
-    from gcs_windplan.link.comparison import Difference
-
-    if first.home == second.home:
-        return comparison
-    ours, theirs = (
-        "unknown" if mission.home is None else f"{mission.home.point}, {mission.home.altitude:.3f} m"
-        for mission in (first, second)
-    )
-    return replace(comparison, differences=(Difference(None, "home", ours, theirs), *comparison.differences))
-
-
-def _note_fences(first: Mission, second: Mission) -> None:
-    if any(mission.fence is not None or mission.rally for mission in (first, second)):
-        linking.note("fence and rally points were not compared: a .waypoints file has none")
-
-
-def _report(comparisons: dict[str, Comparison], firmware: Autopilot | None, as_json: bool) -> None:
-    same = all(comparison.same for comparison in comparisons.values())
+    found = compare_missions(one, other, autopilot=autopilot)
+    for line in found.notes:
+        linking.note(line)
     if as_json:
-        from gcs_windplan.json_text import json_text
-
         parts = {
             kind: {
                 "differences": [str(difference) for difference in comparison.differences],
                 "losses": [str(loss) for loss in comparison.losses],
             }
-            for kind, comparison in comparisons.items()
+            for kind, comparison in found.parts.items()
         }
-        typer.echo(json_text({"verb": "diff", "same": same, "autopilot": firmware, "parts": parts}))
+        document = {"verb": "diff", "same": found.same, "autopilot": found.autopilot, "parts": parts}
+        from gcs_windplan.json_text import json_text
+
+        typer.echo(json_text(document))
     else:
-        _print(comparisons, firmware, same)
-    if not same:
+        _print(found)
+    if not found.same:
         raise typer.Exit(1)
 
 
-def _print(comparisons: dict[str, Comparison], firmware: Autopilot | None, same: bool) -> None:
+def _print(found: MissionDiff) -> None:
     from gcs_windplan.link.comparison import loss_lines
-    from gcs_windplan.mission.firmware import known_firmware
 
-    for kind, comparison in comparisons.items():
+    for kind, comparison in found.parts.items():
         for difference in comparison.differences:
             typer.echo(f"{kind}: {difference}")
-    for kind, comparison in comparisons.items():
-        for line in loss_lines(comparison.losses, known_firmware(firmware)):
+    for kind, comparison in found.parts.items():
+        for line in loss_lines(comparison.losses, found.firmware):
             typer.echo(f"{kind}: {line}")
-    if same:
+    if found.same:
         typer.echo("the same")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -13,10 +13,10 @@ import typer
 from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError, WindplanError
 
 if TYPE_CHECKING:
+    from gcs_windplan.jobs.transfers import Transfer
     from gcs_windplan.link.peer import Peer
-    from gcs_windplan.link.session import ProgressCallback, Session
     from gcs_windplan.link.verified import TransferPart
-    from gcs_windplan.mission.firmware import MissionType
+    from gcs_windplan.progress import Progress, ProgressCallback
 
 EPILOG = (
     "ADDRESS is udpin:HOST:PORT (listen; the way simulators and most autopilots call in), udpout:HOST:PORT, "
@@ -77,28 +77,21 @@ def answering(verb: str, as_json: bool) -> Iterator[None]:
 
 
 @contextmanager
-def vehicle(
-    address: str, system: int | None, component: int | None, key_file: Path | None, timeout: float | None
-) -> Iterator[tuple[Session, Peer]]:
-    """A session at the address with the vehicle that it met."""
-    from gcs_windplan.link.session import open_session
-
-    with open_session(address, key_file=key_file, timeout=timeout) as session:
-        yield session, session.meet(system, component)
-
-
-@contextmanager
-def progress(label: str, quiet: bool) -> Iterator[ProgressCallback | None]:
+def progress(quiet: bool) -> Iterator[ProgressCallback | None]:
     """A bar on the terminal, None where standard error is none."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console
-    from rich.progress import Progress
+    from rich.progress import Progress as Bar
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total or None)
+    with Bar(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+
+        def show(step: Progress) -> None:
+            bar.update(task, description=step.stage, completed=step.done, total=step.total)
+
+        yield show
 
 
 def note(text: str) -> None:
@@ -106,26 +99,11 @@ def note(text: str) -> None:
     typer.echo(f"note: {text}", err=True)
 
 
-def verdict_of(parts: Sequence[TransferPart]) -> str:
-    """The verdict on all parts: unknown if one is, else rejected if one is."""
-    verdicts = {part.outcome.verdict for part in parts}
-    return next(verdict for verdict in ("unknown", "rejected", "accepted") if verdict in verdicts)
-
-
-def report(
-    parts: Sequence[TransferPart],
-    skipped: Sequence[MissionType],
-    peer: Peer,
-    verb: str,
-    as_json: bool,
-    more: dict[str, Any] | None = None,
-) -> None:
+def report(transfer: Transfer, verb: str, as_json: bool, more: dict[str, Any] | None = None) -> None:
     """Print how each part ended, and leave with the exit code; `more` is for the JSON object."""
-    verdict = verdict_of(parts)
+    parts, skipped, peer, verdict = transfer.parts, transfer.skipped, transfer.peer, transfer.verdict
     code = EXIT_CODES[verdict]
     if as_json:
-        from gcs_windplan.json_text import json_text
-
         described = [_described(part) for part in parts]
         described += [{"type": kind, "outcome": f"not {_DEEDS[verb]}"} for kind in skipped]
         document = {"verb": verb, "vehicle": described_peer(peer), "outcome": verdict, "exit_code": code}
@@ -133,6 +111,8 @@ def report(
             f"{part.mission_type}: {part.outcome.message}" for part in parts if part.outcome.verdict != "accepted"
         ]
         failed = {"error": "; ".join(errors)} if errors else {}
+        from gcs_windplan.json_text import json_text
+
         typer.echo(json_text({**document, **failed, "parts": described, **(more or {})}))
     for part in parts:
         if verb == "pull" and part.outcome.verdict == "accepted":

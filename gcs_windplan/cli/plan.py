@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, output_folder, read_request
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, output_folder, read_mission
 
 if TYPE_CHECKING:
     from gcs_windplan.planning.planner import Plan
@@ -32,25 +32,26 @@ def plan(
     force: Annotated[bool, typer.Option("--force", help="Write it even if it breaks the battery's reserve.")] = False,
 ) -> None:
     """Plan and write."""
-    request = read_request(mission, airspeed)
+    asked = read_mission(mission, airspeed)
 
     from gcs_windplan.cli.tables import print_legs
-    from gcs_windplan.planning.cost import CostChoice
-    from gcs_windplan.planning.planner import plan_route, plan_routes
+    from gcs_windplan.jobs.mission import as_cost
+    from gcs_windplan.jobs.plans import plan as plan_mission
 
-    if cost is not None and cost != request.cost.name:
-        request = replace(request, cost=CostChoice(cost))
+    if cost is not None and cost != as_cost(asked.cost).name:
+        asked = replace(asked, cost=cost)
     if speed_changes is not None:
-        request = replace(request, export=replace(request.export, speed_changes=speed_changes))
-    planned = plan_routes(request, [request.cost])[0] if force else plan_route(request)
+        asked = replace(asked, export=replace(asked.export, speed_changes=speed_changes))
+    planned = plan_mission(asked, keep_reserve=not force)
+    request = planned.request
     files = render(planned)
-    folder = output_folder(output, request)
+    folder = output_folder(output, request.name)
     written = write(files, folder)
     print_legs(planned)
     report(written)
     beside = [name for name, there in (("fence", request.fence), ("rally points", request.rally)) if there]
     if request.export.waypoints and beside:
-        stem = file_stem(request)
+        stem = file_stem(request.name)
         typer.echo(f"note: {stem}.waypoints has no place for {' and '.join(beside)}: upload {stem}.plan")
     for path in stale(folder, request, files):
         typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
@@ -64,7 +65,7 @@ def render(planned: Plan) -> dict[str, str | bytes]:
     from gcs_windplan.report import draw_map, draw_profile
 
     request = planned.request
-    stem = file_stem(request)
+    stem = file_stem(request.name)
     mission = mission_of(planned)
     files: dict[str, str | bytes] = {}
     if request.export.waypoints:
@@ -100,5 +101,5 @@ def report(paths: list[Path]) -> None:
 
 def stale(folder: Path, request: Request, files: dict[str, str | bytes]) -> list[Path]:
     """Mission files of an earlier plan in the same folder, which somebody might upload in place of this one's."""
-    names = (f"{file_stem(request)}.waypoints", f"{file_stem(request)}.plan")
+    names = (f"{file_stem(request.name)}.waypoints", f"{file_stem(request.name)}.plan")
     return [folder / name for name in names if name not in files and (folder / name).exists()]

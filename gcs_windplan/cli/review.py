@@ -13,7 +13,6 @@ from gcs_windplan.cli.linking import Json, answering
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment
-    from gcs_windplan.cli.review_world import Options
 
 HELP = """Judge a mission against terrain, wind and limits; write one HTML page for offline use; print what is wrong.
 
@@ -21,7 +20,6 @@ A mission file (.yaml) is planned and judged in its own world. For a .plan or .w
 --wind, --vehicle, or take that of a mission file: --by MISSION.yaml. Two missions are compared.
 """
 EPILOG = "Exit codes: 0 nothing found; 1 findings, or no route exists; 2 something handed in cannot be used."
-_MISSION_FILES: Final = (".yaml", ".yml")
 _EXPORTS: Final = ("kml", "geojson", "csv", "png")
 
 
@@ -83,15 +81,31 @@ def review(
     as_json: Json = False,
 ) -> None:
     """Judge, write, print."""
-    from gcs_windplan.cli.review_world import Options
+    from gcs_windplan.cli.choices import option_name
+    from gcs_windplan.jobs.criteria import Criteria
+    from gcs_windplan.jobs.review import judge
 
-    options = Options(
-        tuple(terrain or ()), tuple(wind or ()), profile, extend, departure, vehicle, autopilot, vehicle_type, home,
-        clearance, max_height, max_wind, max_gust, min_battery, first_leg,
-    )  # fmt: skip
+    criteria = Criteria(
+        terrain=terrain or None,
+        wind=wind or None,
+        profile=profile,
+        extend=extend == "nearest",
+        departure=departure,
+        vehicle=vehicle,
+        autopilot=autopilot,
+        vehicle_type=vehicle_type,
+        home=home,
+        clearance=clearance,
+        max_height=max_height,
+        max_wind=max_wind,
+        max_gust=max_gust,
+        min_battery=min_battery,
+        first_leg=first_leg,
+        named=option_name,
+    )
     with answering("review", as_json):
         wanted = _exports(also)
-        assessments = _judge([mission] if other is None else [mission, other], by, options)
+        assessments = judge([mission] if other is None else [mission, other], by, criteria)
         read = [file for file in (mission, other, by, vehicle) if file is not None]
         written = _write(assessments, output, wanted, read)
     code = 1 if any(assessment.findings for assessment in assessments) else 0
@@ -103,15 +117,6 @@ def review(
         _print(assessments, written)
     if code:
         raise typer.Exit(code)
-
-
-def _judge(files: Sequence[Path], by: Path | None, options: Options) -> list[Assessment]:
-    """Both missions judged; one that is read beside a mission file in that one's world."""
-    from gcs_windplan.cli.review_inputs import assessment_of
-
-    planned = (file for file in files if file.suffix.lower() in _MISSION_FILES)
-    world = by if by is not None else next(planned, None)
-    return [assessment_of(file, world, options) for file in files]
 
 
 def _exports(also: str | None) -> tuple[str, ...]:

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
     from gcs_windplan.link.transport import Transport
-    from gcs_windplan.mission import Home
-    from gcs_windplan.planning.request import Request
     from gcs_windplan.standin.vehicle import StandInOptions
-    from gcs_windplan.vehicle import Autopilot
-    from gcs_windplan.wind.field import WindField
 
 HELP = (
     "Play a vehicle: a stand-in, not a simulator. It keeps ArduCopter's or PX4's mission rules, answers what ground"
@@ -47,7 +43,7 @@ def vehicle(
     ] = None,
     wind: Annotated[
         str | None,
-        typer.Option(metavar="SPEED@FROM", help="A constant wind, such as 5@270 or '12 kt@300', in m/s and degrees."),
+        typer.Option(metavar="WIND", help="In place of the mission's: '5 m/s from 270', short 5@270; or a forecast."),
     ] = None,
     airspeed: Annotated[
         str | None, typer.Option(metavar="SPEED", help="The most that it flies through the air; default 15 m/s.")
@@ -80,21 +76,28 @@ def vehicle(
     ] = False,
 ) -> None:
     """Serve until interrupted."""
-    request, place = _request(mission), _home(home)
-    name = _autopilot(autopilot, request)
-    if request is not None and not request.vehicle.hovers:
-        typer.echo("note: the mission's vehicle is a fixed-wing; the stand-in flies as a multicopter")
-    field, speed = _wind(wind), _airspeed(airspeed)
+    from gcs_windplan.cli.choices import option_name
+    from gcs_windplan.jobs.standins import standin_options
     from gcs_windplan.link.key import read_key
     from gcs_windplan.link.transport import open_transport
+    from gcs_windplan.standin.rules import ServerOptions
 
+    server = ServerOptions(system=sysid, capacity=capacity, mavlink1=mavlink1)
+    options = standin_options(
+        mission,
+        server,
+        autopilot=autopilot,
+        wind=wind,
+        airspeed=airspeed,
+        home=home,
+        speedup=speedup,
+        fly=fly,
+        on_note=lambda text: typer.echo(f"note: {text}"),
+        named=option_name,
+    )
     key = read_key(sign) if sign is not None else None
-    transport = open_transport(listen)  # before anything slow: a wrong address is told at once
+    transport = open_transport(listen)
     try:
-        from gcs_windplan.standin.rules import ServerOptions
-
-        server = ServerOptions(system=sysid, capacity=capacity, mavlink1=mavlink1)
-        options = _options(name, request, place, field, speed, server=server, speedup=speedup, fly=fly)
         _serve(options, transport, listen, key)
     except KeyboardInterrupt:
         typer.echo("ended")
@@ -130,95 +133,3 @@ def _serve(options: StandInOptions, transport: Transport, listen: str, key: byte
             if not listen.lower().startswith("tcpin:"):
                 raise
             say(f"{error}; it waits for the next one")
-
-
-def _options(
-    autopilot: Autopilot,
-    request: Request | None,
-    home: Home | None,
-    wind: WindField | None,
-    airspeed: float | None,
-    **told: Any,
-) -> StandInOptions:
-    """What the command line and the mission file make together."""
-    from dataclasses import replace
-
-    from gcs_windplan.mission.firmware import firmware_of
-    from gcs_windplan.standin.vehicle import StandInOptions, planned_profile
-    from gcs_windplan.standin.world import planned_world, simulator_world, world_at
-
-    firmware = firmware_of(autopilot, "multicopter")
-    if request is not None:
-        world = planned_world(request, home, wind)
-    else:
-        world = world_at(home, wind) if home is not None else simulator_world(firmware, wind)
-    profile = planned_profile(firmware, request.vehicle if request is not None else None)
-    if airspeed is not None:
-        profile = replace(profile, airspeed=airspeed)
-    return StandInOptions(firmware, profile, world, **told)
-
-
-def _request(mission: Path | None) -> Request | None:
-    if mission is None:
-        return None
-    from gcs_windplan.cli.choices import read_request
-
-    return read_request(mission, None)
-
-
-def _autopilot(name: str | None, request: Request | None) -> Autopilot:
-    from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.mission.firmware import autopilots
-
-    if name is None:
-        return request.vehicle.autopilot if request is not None else "ardupilot"
-    if name not in autopilots():
-        raise InputError(Problem(f"{name!r} is none of {', '.join(autopilots())}", "--autopilot"))
-    return name
-
-
-def _wind(text: str | None) -> WindField | None:
-    """A constant wind from SPEED@FROM."""
-    if text is None:
-        return None
-    from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.units import ANGLE, SPEED, read_quantity
-    from gcs_windplan.wind.analytic import ConstantWind
-
-    speed, at, direction = text.partition("@")
-    try:
-        if not at:
-            raise ValueError(f"{text!r} is no wind; write SPEED@FROM, for example 5@270")
-        return ConstantWind.from_direction(read_quantity(speed, SPEED), read_quantity(direction, ANGLE))
-    except (ValueError, InputError) as error:
-        raise InputError(Problem(str(error), "--wind")) from None
-
-
-def _airspeed(text: str | None) -> float | None:
-    if text is None:
-        return None
-    from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.jobs.missionfile.values import AIRSPEED
-
-    try:
-        return AIRSPEED.read(text)
-    except ValueError as error:
-        raise InputError(Problem(str(error), "--airspeed")) from None
-
-
-def _home(text: str | None) -> Home | None:
-    """Home from LAT,LON,ALT."""
-    if text is None:
-        return None
-    from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.geo.frame import GeoPoint
-    from gcs_windplan.mission import Home
-
-    try:
-        latitude, longitude, altitude = (float(part) for part in text.split(","))
-        return Home(GeoPoint(latitude, longitude), altitude)
-    except ValueError:
-        message = f"{text!r} is no place; write LAT,LON,ALT, for example 47.3977,8.5456,488"
-        raise InputError(Problem(message, "--home")) from None
-    except InputError as error:
-        raise InputError(Problem(str(error), "--home")) from None

@@ -4,10 +4,11 @@ from gcs_windplan.formats.any_format import read_mission
 from gcs_windplan.formats.plan import format_plan, parse_plan, read_plan, write_plan
 from gcs_windplan.formats.reading import ReadMission
 from gcs_windplan.formats.waypoints import format_waypoints, parse_waypoints, read_waypoints, write_waypoints
-from gcs_windplan.formats.writing import write_atomically
+from gcs_windplan.formats.writing import check_writable, write_atomically
 
 __all__ = [
     "ReadMission",
+    "check_writable",
     "format_plan",
     "format_waypoints",
     "parse_plan",

@@ -100,7 +100,7 @@ def _part(root: Node, key: str, contents: Sequence[str], repairs: Repairs) -> No
     if not node.present or node.value is None:
         return None
     if not isinstance(node.value, dict):
-        repairs.add(f"{key} is not an object; it was left out")
+        repairs.leave_out(f"{key} is not an object; it was left out")
         return None
     version = node.value.get("version")
     if version == _VERSION:
@@ -108,7 +108,7 @@ def _part(root: Node, key: str, contents: Sequence[str], repairs: Repairs) -> No
     held = [name for name in contents if node.value.get(name)]
     if held:
         found = "has no version" if version is None else f"is of version {version}"
-        repairs.add(f"{key} {found}, and only {_VERSION} is known; its {' and '.join(held)} were left out")
+        repairs.leave_out(f"{key} {found}, and only {_VERSION} is known; its {' and '.join(held)} were left out")
     return None
 
 
@@ -117,7 +117,7 @@ def _usable(node: Node, key: str, read: Callable[[Node, Repairs], _T], repairs: 
     if not array.present or array.value is None:
         return
     if not isinstance(array.value, list):
-        repairs.add(f"{array.path} is not an array; it was left out")
+        repairs.leave_out(f"{array.path} is not an array; it was left out")
         return
     for element in array.elements():
         found = _used(element, read, repairs)
@@ -132,9 +132,9 @@ def _used(node: Node, read: Callable[[Node, Repairs], _T], repairs: Repairs) -> 
     except FormatError as error:
         problem = error.problems[0]
         inner = (problem.field or "").removeprefix(node.path).lstrip(".")
-        repairs.add(f"{node.path} was left out: {' '.join(part for part in (inner, problem.message) if part)}")
+        repairs.leave_out(f"{node.path} was left out: {' '.join(part for part in (inner, problem.message) if part)}")
     except InputError as error:
-        repairs.add(f"{node.path} was left out: {error}")
+        repairs.leave_out(f"{node.path} was left out: {error}")
     return None
 
 

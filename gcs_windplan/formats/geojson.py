@@ -26,6 +26,11 @@ _Place: TypeAlias = "tuple[float, float, float]"  # longitude and latitude [deg]
 
 
 def format_geojson(assessment: Assessment) -> str:
+    """The mission as GeoJSON's text."""
+    return json_text(geojson_of(assessment)) + "\n"
+
+
+def geojson_of(assessment: Assessment) -> dict[str, Any]:
     """A FeatureCollection; `kind` of a feature is `leg`, `stop`, `finding`, `area` or `rally`."""
     features = [
         *(_leg(leg, assessment) for leg in assessment.legs),
@@ -34,8 +39,7 @@ def format_geojson(assessment: Assessment) -> str:
         *(_area(outline, assessment) for outline in assessment.outlines),
         *(_rally(number, place) for number, place in enumerate(assessment.rally, start=1)),
     ]
-    collection = {"type": "FeatureCollection", "name": assessment.name, "features": features}
-    return json_text(collection) + "\n"
+    return {"type": "FeatureCollection", "name": assessment.name, "features": features}
 
 
 def on_earth(longitude: float, latitude: float) -> tuple[float, float]:

@@ -141,7 +141,7 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     hover_speed = _speed(mission.at("hoverSpeed"), repairs)
     fence, rally = read_fence(root, repairs), read_rally(root, repairs)
     read = Mission(items, home, autopilot, vehicle_type, cruise_speed, hover_speed, fence, rally)
-    return ReadMission(read, repairs.sentences())
+    return repairs.read(read)
 
 
 def _check_versions(root: Node) -> None:

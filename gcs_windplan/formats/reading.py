@@ -15,10 +15,14 @@ _LINES_SHOWN = 5
 
 @dataclass(frozen=True, slots=True)
 class ReadMission:
-    """A mission read from a file, and what had to be repaired or left out on the way, a sentence each."""
+    """A mission read from a file, and what had to be repaired or left out on the way, a sentence each.
+
+    `left_out` are those of the repairs that left out parts of its fence or rally points.
+    """
 
     mission: Mission
     repairs: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -26,12 +30,22 @@ class Repairs:
     """Collects repairs while a file is read; one sentence for all lines with the same."""
 
     _lines: dict[str, list[int]] = field(default_factory=dict)
+    _left_out: list[str] = field(default_factory=list)
 
     def add(self, message: str, line: int | None = None) -> None:
         """Note a repair, of the whole file or of a line."""
         lines = self._lines.setdefault(message, [])
         if line is not None:
             lines.append(line)
+
+    def leave_out(self, message: str) -> None:
+        """Note that a part of the fence or of the rally points was left out."""
+        self.add(message)
+        self._left_out.append(message)
+
+    def read(self, mission: Mission) -> ReadMission:
+        """The mission with its repairs."""
+        return ReadMission(mission, self.sentences(), tuple(self._left_out))
 
     def sentences(self) -> tuple[str, ...]:
         """One sentence for each kind, in the order of first appearance."""

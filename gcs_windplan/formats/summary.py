@@ -13,13 +13,18 @@ if TYPE_CHECKING:
 
 
 def format_summary(plan: Plan) -> str:
-    """The plan as JSON: SI units, angles in degrees from true north, wind towards where it blows.
+    """The plan's figures as JSON."""
+    return json_text(summary_of(plan)) + "\n"
 
-    null for what is not known, or infinite: the time of a member that cannot fly it, the energy of a way that is none.
-    `search` holds counts only: the same plan gives the same text, whatever the machine.
+
+def summary_of(plan: Plan) -> dict[str, Any]:
+    """The plan's figures: SI units, angles in degrees from true north, wind towards where it blows.
+
+    None for what is not known, or infinite: the time of a member that cannot fly it, the energy of a way that is none.
+    `search` holds counts only: the same plan gives the same figures, whatever the machine.
     """
     request = plan.request
-    summary = {
+    return {
         "name": request.name,
         "cost": str(plan.choice),
         "cost_value": plan.cost,
@@ -44,7 +49,6 @@ def format_summary(plan: Plan) -> str:
             "path_vertices": plan.effort.vertices,
         },
     }
-    return json_text(summary) + "\n"
 
 
 def _ensemble(plan: Plan) -> dict[str, Any] | None:

@@ -123,7 +123,7 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     home, items = _split_home(rows, version, repairs)
     shift = 1 if version == 120 else 0
     mission = Mission(tuple(_shifted(row.item(repairs), shift) for row in items), home)
-    return ReadMission(mission, repairs.sentences())
+    return repairs.read(mission)
 
 
 def _content(text: str, repairs: Repairs) -> list[tuple[int, str]]:

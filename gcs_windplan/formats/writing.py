@@ -41,6 +41,22 @@ def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> None
         raise FormatError(Problem(f"cannot be written ({reason}): {advice}", file=Path(path))) from error
 
 
+def check_writable(file: Path) -> None:
+    """Raise `FormatError` for a file that cannot be written where it is to be."""
+    problem = ""
+    try:
+        if not file.parent.is_dir():
+            problem = "its folder is not there: make it first"
+        elif file.is_dir():
+            problem = "is a folder: add a file name"
+        elif not os.access(Path(os.path.realpath(file)).parent, os.W_OK | os.X_OK):
+            problem = "its folder cannot be written: choose another, or make it writable"
+    except OSError as error:
+        problem = f"cannot be written ({(error.strerror or str(error)).lower()}): choose another name"
+    if problem:
+        raise FormatError(Problem(problem, file=file))
+
+
 def _replace(target: Path, data: bytes) -> None:
     temporary = target.with_name(f".{secrets.token_hex(6)}.tmp")
     try:

@@ -21,13 +21,14 @@ from gcs_windplan.link.outcome import Reason
 from gcs_windplan.link.peer import Contact, Ident, Peer
 from gcs_windplan.link.transport import Clock, Transport, open_transport
 from gcs_windplan.mission import Home
+from gcs_windplan.progress import CancelToken
 
 # 255 is what vehicles take for a ground station; the component keeps us apart from one that runs beside us
 OWN = Ident(255, mavlink.MAV_COMP_ID_PATHPLANNER)
 PATIENCE = 10.0  # [s] to find a vehicle
 _BEAT = 1.0  # [s] mavlink.io, Heartbeat Protocol
 
-ProgressCallback: TypeAlias = Callable[[int, int], None]
+TransferCallback: TypeAlias = Callable[[int, int], None]
 """Told how many items of how many are through."""
 
 
@@ -61,7 +62,7 @@ class Session:
     """One ground station on one link.
 
     With `key` it signs, and hears only what is signed with it. `timeout` [s] bounds everything the session does;
-    what is under way then is cancelled. `interrupted` tells that the user did so.
+    what is under way then is cancelled, and so it is by the token `cancel`. `interrupted` tells that the user did so.
     """
 
     def __init__(
@@ -72,10 +73,12 @@ class Session:
         timeout: float | None = None,
         clock: Clock = time.monotonic,
         own: Ident = OWN,
+        cancel: CancelToken | None = None,
     ) -> None:
         self.own = own
         self.codec = Codec(*own, key)
         self.interrupted = False
+        self._cancel = cancel
         self._transport = transport
         self._clock = clock
         self._signs = key is not None
@@ -129,20 +132,26 @@ class Session:
             return "its messages are signed, so it may want ours to be: give its key with --sign"
         return ""
 
-    def run(self, machine: Machine, watch: ProgressCallback | None = None) -> None:
+    def run(self, machine: Machine, watch: TransferCallback | None = None) -> None:
         """Run a machine until it is done; Ctrl-C, a dead line and the session's end of time cancel it."""
         try:
             self._send(machine.begin(self._clock()))
             while not machine.done:
                 self._step(machine)
+                if self._cancel is not None and self._cancel.cancelled:
+                    self._stop(machine)
                 if watch is not None:
                     watch(*machine.progress)
         except KeyboardInterrupt:
-            self.interrupted = True
-            with suppress(LinkError):
-                self._send(machine.cancel())
+            self._stop(machine)
         except LinkError as error:
             machine.cancel("lost", str(error))
+
+    def _stop(self, machine: Machine) -> None:
+        """End a machine because the user wants it."""
+        self.interrupted = True
+        with suppress(LinkError):
+            self._send(machine.cancel())
 
     def _step(self, machine: Machine) -> None:
         self._beat()
@@ -178,7 +187,9 @@ class Session:
         return LinkError("no vehicle was heard: check the address, and that the vehicle is on")
 
 
-def open_session(address: str, *, key_file: Path | None = None, timeout: float | None = None) -> Session:
+def open_session(
+    address: str, *, key_file: Path | None = None, timeout: float | None = None, cancel: CancelToken | None = None
+) -> Session:
     """A session at an address; raises InputError for a wrong address or key file."""
     key = None if key_file is None else read_key(key_file)
-    return Session(open_transport(address), key=key, timeout=timeout)
+    return Session(open_transport(address), key=key, timeout=timeout, cancel=cancel)

@@ -12,7 +12,7 @@ from gcs_windplan.link.exchange import Ends
 from gcs_windplan.link.firmware import has_home_item, incoming_mission
 from gcs_windplan.link.outcome import CANCELLED, Outcome
 from gcs_windplan.link.peer import Peer
-from gcs_windplan.link.session import ProgressCallback, Session
+from gcs_windplan.link.session import Session, TransferCallback
 from gcs_windplan.link.upload import Upload
 from gcs_windplan.mission import Home, MissionItem
 from gcs_windplan.mission.firmware import MissionType
@@ -61,7 +61,7 @@ def push_items(
     items: Sequence[MissionItem],
     *,
     verify: bool = True,
-    watch: ProgressCallback | None = None,
+    watch: TransferCallback | None = None,
 ) -> TransferPart:
     """Upload items as they are to travel, read them back and compare; none at all deletes what is there.
 
@@ -101,7 +101,7 @@ def clear_items(session: Session, peer: Peer, mission_type: MissionType, *, veri
 
 
 def pull_items(
-    session: Session, peer: Peer, mission_type: MissionType, *, watch: ProgressCallback | None = None
+    session: Session, peer: Peer, mission_type: MissionType, *, watch: TransferCallback | None = None
 ) -> TransferPart:
     """Read what the vehicle holds of one type, in its own form."""
     if (refused := _unable(peer, mission_type, "read")) is not None:
@@ -120,7 +120,7 @@ def _unable(peer: Peer, mission_type: MissionType, deed: str) -> Outcome | None:
     return Outcome("rejected", "mavlink1", message)
 
 
-def _run(session: Session, upload: Upload, watch: ProgressCallback | None) -> int:
+def _run(session: Session, upload: Upload, watch: TransferCallback | None) -> int:
     """Run an upload; gives how many items the vehicle asked for at most, as an upload may begin again."""
     most = 0
 
@@ -134,14 +134,14 @@ def _run(session: Session, upload: Upload, watch: ProgressCallback | None) -> in
     return max(most, upload.progress[0])
 
 
-def _read(session: Session, ends: Ends, watch: ProgressCallback | None) -> Download:
+def _read(session: Session, ends: Ends, watch: TransferCallback | None) -> Download:
     download = Download(ends, session.contact(ends.peer))
     session.run(download, watch)
     return download
 
 
 def _proved(
-    session: Session, ends: Ends, items: tuple[MissionItem, ...], sent: Outcome, watch: ProgressCallback | None
+    session: Session, ends: Ends, items: tuple[MissionItem, ...], sent: Outcome, watch: TransferCallback | None
 ) -> _Proof:
     """The outcome after reading back; a reading during which somebody else wrote proves nothing."""
     for _ in range(_READINGS):

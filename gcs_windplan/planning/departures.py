@@ -33,9 +33,9 @@ class Departure:
 
     `seconds`, `length` [m] and `energy` [J] (where the vehicle's power is known) of the route, None where there is
     none. `spread` is the same route in every member of an ensemble. `reason` says why it cannot be flown, or not in as
-    many members as the request's `robust` asks for, or not with the battery. `wind` and `gust` are the strongest along
-    the route in any member [m/s]; the gust is None where the forecast tells none. `worked` is the processor's time that
-    it took [s]. `robust` is the request's quantile.
+    many members as the request's `robust` asks for, or not with the battery; `brief` the same in a few words. `wind`
+    and `gust` are the strongest along the route in any member [m/s]; the gust is None where the forecast tells none.
+    `worked` is the processor's time that it took [s]. `robust` is the request's quantile.
     """
 
     moment: datetime
@@ -48,6 +48,7 @@ class Departure:
     reason: str | None = None
     worked: float = 0.0
     robust: float = 0.5
+    brief: str | None = None
 
     @property
     def key(self) -> float:
@@ -129,7 +130,8 @@ class _Job:
                 found.airspeeds,
             )  # fmt: skip
         except (NoRouteError, WindError) as error:
-            return Departure(moment, reason=str(error), worked=time.process_time() - since)
+            brief = error.brief if isinstance(error, NoRouteError) else str(error)
+            return Departure(moment, reason=str(error), brief=brief, worked=time.process_time() - since)
         spread = spread_of(request, found.points, begin, found.airspeeds)
         strongest = strongest_along(request, found.points, begin, found.airspeeds)
         return Departure(

@@ -166,7 +166,8 @@ def _no_order(request: Request, costs: Costs, errors: dict[tuple[int, int], NoRo
         told = errors.get((a, b))
         text = f"cannot be {way} on any way: {told if told is not None else 'the wind closes all of them'}"
         cuts = told.cuts if told is not None else {"wind": 1}
-        return NoRouteError(str(request.locate(Problem(text, request.sites[site].field))), cuts)
+        brief = f"{request.sites[site].field} cannot be {way}" if told is None else told.brief
+        return NoRouteError(str(request.locate(Problem(text, request.sites[site].field))), cuts, brief)
     return NoRouteError("no order of the vias can be flown: each can be reached and left, but not all on one way", {})
 
 

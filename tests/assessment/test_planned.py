@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.assessment import Stop, assess_plan
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.export import flown_duration
 from gcs_windplan.planning.planner import plan_routes
 from gcs_windplan.wind import WindField
@@ -30,7 +30,7 @@ def sampled_wind(wind: WindField, start: Stop, end: Stop) -> tuple[float, float]
 
 @pytest.mark.parametrize("name", ["front", "inspection", "jacksboro", "keep_out", "village"])
 def test_a_plan_keeps_its_figures(gallery, name):
-    request = gw.read_mission(gallery / f"{name}.yaml")
+    request = read_request(gallery / f"{name}.yaml")
     plan = plan_routes(request, [request.cost])[0]
     review = assess_plan(plan)
     flown = flown_duration(plan)

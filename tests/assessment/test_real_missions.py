@@ -11,12 +11,11 @@ import pytest
 import rasterio
 
 from gcs_windplan.assessment import Assessment
-from gcs_windplan.cli.review_inputs import assessment_of
-from gcs_windplan.cli.review_world import Options
 from gcs_windplan.errors import InputError
 from gcs_windplan.formats.geojson import format_geojson
 from gcs_windplan.formats.kml import format_kml
 from gcs_windplan.formats.legs_csv import format_legs_csv
+from gcs_windplan.jobs.review import review as review_mission
 
 five_centimetres = 0.05
 one_percent = 0.01
@@ -36,7 +35,7 @@ REFUSED = {
 
 
 def judge(file: Path, *terrain: str, **more: str) -> Assessment:
-    return assessment_of(file, None, Options(terrain=terrain, **more))
+    return review_mission(file, terrain=terrain, **more)
 
 
 def test_every_real_mission_is_judged_or_refused_with_the_reason(shared_data):

@@ -119,14 +119,14 @@ def departures(count: str, cores: str) -> Measured:
 
 def _across(path: Path, *when: Any):
     """The mission flown 20 km, all across the fault, with all of its terrain around."""
-    import gcs_windplan as gw
+    from gcs_windplan.jobs.requests import read_request
 
     text = path.read_text().replace("latitude: 36.57, longitude: -84.255", "latitude: 36.52, longitude: -84.34")
     text = text.replace("  layers:", "  margin: 40 km\n  layers:").replace("vehicles/", f"{path.parent}/vehicles/")
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
         file.write(text.replace("forecast: wind/", f"forecast: {path.parent}/wind/"))
         file.flush()
-        return gw.read_mission(file.name, *when)
+        return read_request(file.name, *when)
 
 
 FORECAST_JOBS: dict[str, Callable[..., Measured]] = {

@@ -120,9 +120,10 @@ def networkx_dijkstra(n: str, neighbours: str, way: str) -> Measured:
 def plan(nodes: str, neighbours: str) -> Measured:
     """All of planning but shaping, over real ground in a gridded wind: veil with exact clearance, winds, search."""
     import gcs_windplan as gw
+    from gcs_windplan.jobs.requests import read_request
     from gcs_windplan.planning.request import Uniform
 
-    request = gw.read_mission(MISSION)
+    request = read_request(MISSION)
     box = request.terrain.extent
     spacing = ((box.east - box.west) * (box.north - box.south) / float(nodes)) ** 0.5
     coarse = replace(request, layers=(50.0,), margin=40_000.0, graph=Uniform(150.0, int(neighbours)))

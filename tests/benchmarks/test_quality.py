@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gcs_windplan as gw
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.request import Request, Roadmap, Uniform
 from gcs_windplan.planning.sites import choose_area, choose_layers, choose_nodes, choose_spacing
 from gcs_windplan.planning.veil import SHARE_OF_GRID
@@ -85,7 +86,7 @@ def test_over_real_ground(table, name, by, request, tmp_path):
         path = tmp_path / f"{name}.yaml"
         shared = request.getfixturevalue("shared_data")
         path.write_text(text.format(data=shared, departure="2020-02-22T12:00Z"))
-    mission = gw.read_mission(path)
+    mission = read_request(path)
     gw.plan_route(mission)  # warm
     begin = time.perf_counter()
     ours = gw.plan_route(mission)

@@ -83,12 +83,12 @@ def test_bad_times_are_one_clear_error(words, message):
 
 
 def test_what_the_workers_find_is_what_one_core_finds():
-    from gcs_windplan.jobs.missionfile import read_mission
+    from gcs_windplan.jobs.requests import read_request
     from gcs_windplan.planning.departures import moments_between, sweep
 
     first = datetime.fromisoformat("2026-05-01T07:00Z")
     moments = moments_between(first, first + timedelta(hours=2), timedelta(hours=1))
-    request = read_mission(FRONT, first, 12 * 3600.0)
+    request = read_request(FRONT, first, 12 * 3600.0)
     alone, together = (list(sweep(request, moments, cores=cores)) for cores in (1, 2))
     assert [one.moment for one in together] == moments
     assert [one.seconds for one in alone] == pytest.approx([one.seconds for one in together], rel=1e-9)

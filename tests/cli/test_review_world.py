@@ -9,9 +9,10 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from gcs_windplan.cli.app import app
-from gcs_windplan.cli.review_world import Options, case_by_options
 from gcs_windplan.errors import InputError
 from gcs_windplan.formats import write_plan
+from gcs_windplan.jobs.cases import case_by_criteria
+from gcs_windplan.jobs.criteria import Criteria
 from gcs_windplan.mission import Mission
 from tests.assessment.cases import HOME, RETURN, at, takeoff
 from tests.cli.test_review import WORLD
@@ -73,8 +74,8 @@ def test_a_mission_elsewhere_is_told_with_its_file(drawn: Path, gallery: Path, t
 def test_a_fixed_wing_climbs_as_its_airframe(gallery: Path):
     def pace(kind, airframe):
         flown = Mission(MISSION.items, HOME, "ardupilot", kind)
-        options = Options(("flat:500",), vehicle=gallery / "vehicles" / airframe)
-        return case_by_options(flown, "test", Path("test.plan"), options).pace
+        criteria = Criteria(terrain="flat:500", vehicle=gallery / "vehicles" / airframe)
+        return case_by_criteria(flown, "test", Path("test.plan"), criteria).pace
 
     wing, copter = pace("fixed-wing", "fixed_wing.yaml"), pace("multicopter", "large_multirotor.yaml")
     assert (wing.climb, wing.descent) == (3, 3)

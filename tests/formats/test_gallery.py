@@ -14,6 +14,7 @@ import pytest
 
 import gcs_windplan as gw
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Command, Mission, fence_items, rally_items
 from gcs_windplan.planning.planner import Plan
 from tests.oracles.fences import breaches
@@ -25,7 +26,7 @@ one_millimetre = 1e-3
 
 @cache
 def planned(path: Path) -> Plan:
-    return gw.plan_route(gw.read_mission(path))
+    return gw.plan_route(read_request(path))
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)

@@ -10,6 +10,7 @@ import pytest
 import gcs_windplan as gw
 from gcs_windplan.errors import BatteryError, MissionFileError, RequestError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Command
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
@@ -23,7 +24,7 @@ from tests.worlds import rough_dem
 
 @pytest.fixture(scope="module")
 def asked(gallery):
-    return gw.read_mission(gallery / "shear.yaml")
+    return read_request(gallery / "shear.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -96,14 +97,14 @@ def test_free_without_an_airframe_is_told_with_its_line(tmp_path, gallery):
     file = tmp_path / "free.yaml"
     file.write_text(text)
     with pytest.raises(MissionFileError, match=r"vehicle\.airspeed: to be free to choose asks for .* `airframe`"):
-        gw.read_mission(file)
+        read_request(file)
 
 
 def test_energy_without_an_airframe_is_told(gallery):
-    asked = gw.read_mission(gallery / "village.yaml")
+    asked = read_request(gallery / "village.yaml")
     with pytest.raises(RequestError, match="energy asks for the vehicle's power"):
         gw.plan_route(replace(asked, cost=CostChoice("energy")))
-    shear = gw.read_mission(gallery / "shear.yaml")
+    shear = read_request(gallery / "shear.yaml")
     with pytest.raises(RequestError, match="the paper's speed model has no airspeed"):
         gw.plan_route(replace(shear, vehicle=replace(shear.vehicle, speed_model="paper")))
 

@@ -16,6 +16,7 @@ import gcs_windplan as gw
 from gcs_windplan.cli.app import app
 from gcs_windplan.cli.tables import summary_lines
 from gcs_windplan.errors import NoRouteError, RequestError
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.cost import COSTS
 from gcs_windplan.planning.departures import sweep
 from gcs_windplan.planning.limits import strongest_along
@@ -200,7 +201,7 @@ def test_the_strongest_wind_is_that_of_a_naive_look():
 
 
 def test_the_mission_files_limits_reach_the_plan_and_are_printed(gallery, tmp_path):
-    assert gw.read_mission(gallery / "rounds.yaml").limits == Limits(9.0, None, 0.3, 300.0, None)
+    assert read_request(gallery / "rounds.yaml").limits == Limits(9.0, None, 0.3, 300.0, None)
     done = CliRunner().invoke(app, ["plan", str(gallery / "rounds.yaml"), "-o", str(tmp_path)])
     assert done.exit_code == 0, done.output
     assert re.search(r"^strongest: wind 8\.[5-9] m/s \(limits\.wind 9 m/s\)$", done.output, re.MULTILINE)
@@ -214,7 +215,7 @@ def test_gusts_of_a_file(gallery, tmp_path):
         )
         path = tmp_path / f"{name}.yaml"
         path.write_text(text)
-        return gw.read_mission(path)
+        return read_request(path)
 
     plan = gw.plan_route(written("front", "{max_height: 120 m, wind: 9 m/s, gust: 10 m/s}"))
     assert 8.0 < plan.strongest.gust <= 10.0

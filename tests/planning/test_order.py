@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import gcs_windplan as gw
 from gcs_windplan.errors import NoRouteError, RequestError
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.order import Costs, best_order, optimise_order
 from gcs_windplan.planning.problem import pose_problem
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
@@ -291,7 +292,7 @@ def test_the_mission_file_says_so_too():
 
 
 def test_the_gallerys_round_is_another_one_in_still_air(gallery):
-    asked = gw.read_mission(gallery / "rounds.yaml")
+    asked = read_request(gallery / "rounds.yaml")
     assert asked.order == "free"
     windy, calm = (chosen(one) for one in (asked, replace(asked, wind=Calm())))
     assert windy != calm

@@ -12,6 +12,7 @@ from gcs_windplan.errors import BatteryError
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.flight.energy import leg_energies
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.planner import refuse_unsafe
 from gcs_windplan.planning.request import Limits, Site
@@ -126,7 +127,7 @@ def test_wind_that_closes_the_way_back_is_no_way_home(airframe):
 
 def test_the_shortest_mission_cannot_return_and_the_thriftiest_does(gallery):
     """There and back in shear: the shortest way flies back too high, against too much wind."""
-    asked = gw.read_mission(gallery / "shear.yaml")
+    asked = read_request(gallery / "shear.yaml")
     shortest, thriftiest = gw.plan_routes(asked, [CostChoice("distance"), CostChoice("energy")])
     between = (shortest.battery.total + thriftiest.battery.total) / 2
     weak = with_battery(asked, between)

@@ -304,10 +304,10 @@ def test_other_numbers_of_missions_are_refused(how_many: int) -> None:
 
 
 def test_a_planned_mission_has_a_page(gallery) -> None:
-    from gcs_windplan.jobs.missionfile import read_mission
+    from gcs_windplan.jobs.requests import read_request
     from gcs_windplan.planning.planner import plan_route
 
-    page = render_page([assess_plan(plan_route(read_mission(gallery / "keep_out.yaml")))])
+    page = render_page([assess_plan(plan_route(read_request(gallery / "keep_out.yaml")))])
     text = text_of(tree_of(page).find("body"))
     assert "keep out" in text
     assert len(page.encode()) < 2 * MEGABYTE

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gcs_windplan.jobs.missionfile import read_mission
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.link.firmware import outgoing_items
 from gcs_windplan.link.wire import item_to_message
 from gcs_windplan.mission.firmware import firmware_of
@@ -26,7 +26,7 @@ from .scenes import HILL, Scene
 def test_a_planned_mission_is_flown_as_planned(autopilot, tmp_path) -> None:
     path = tmp_path / "hill.yaml"
     path.write_text(HILL.format(autopilot=autopilot))
-    plan = plan_route(read_mission(path))
+    plan = plan_route(read_request(path))
     request = plan.request
     world = planned_world(request)
     assert world.home.altitude == pytest.approx(plan.waypoints[0].altitude - plan.waypoints[0].above_ground, abs=0.01)

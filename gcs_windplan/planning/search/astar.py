@@ -188,7 +188,8 @@ def no_route(
     cuts = _count(flags[~inner] if not inner.all() else flags)
     if not cuts:
         text = "no node lies near enough: use a finer graph, more nodes or a larger radius"
-        return NoRouteError(f"no route: the search reached {len(reached)} of {veil.size} nodes; {text}.", cuts)
+        brief = f"the search reached {len(reached)} of {veil.size} nodes; {text}"
+        return NoRouteError(f"no route: {brief}.", cuts, brief)
     limit = f"wind limit ({graph.limits})"
     told = {limit if name == BREACHES[TOO_WINDY] else name: count for name, count in cuts.items()}
     listed = "; ".join(f"{name}: {count} legs" for name, count in told.items())
@@ -199,6 +200,7 @@ def no_route(
         f"no route: the search reached {len(reached)} of {veil.size} nodes, and what leads on is cut by {listed}."
         f" {advice}",
         cuts,
+        "; ".join(f"{name}: {count} legs" for name, count in cuts.items()),
     )
 
 

@@ -16,9 +16,10 @@ from hypothesis import strategies as st
 import gcs_windplan as gw
 from gcs_windplan.errors import InputError, MissionFileError, RequestError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.jobs.missionfile import read_mission
+from gcs_windplan.jobs.areas import Area, fence_area_of, prism_of
 from gcs_windplan.jobs.missionfile.areas import AreaModel
-from gcs_windplan.jobs.missionfile.outlines import fence_area_of, prism_of
+from gcs_windplan.jobs.missionfile.mission import area_of
+from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Fence, FenceCircle, FencePolygon, Frame, fence_items
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.request import FenceArea, Request, Site, Uniform
@@ -52,7 +53,7 @@ def areas(keep_out: str = "[]", keep_in: str = FENCED) -> str:
 def asked(folder: Path, **fields: str | None) -> Request:
     path = folder / "m.yaml"
     path.write_text(mission(**{**WORLD, **fields}))
-    return read_mission(path)
+    return read_request(path)
 
 
 def refusals(folder: Path, **fields: str | None) -> list[str]:
@@ -194,25 +195,25 @@ def test_terrain_is_read_as_far_as_the_rally_points_lie(tmp_path: Path) -> None:
     path = tmp_path / "m.yaml"
     rally = "[{latitude: 36.65, longitude: -84.1}]"  # 16 km east of the route
     path.write_text(mission(rally=rally))
-    with_rally = read_mission(path)
+    with_rally = read_request(path)
     place = with_rally.frame.to_local(36.65, -84.1)
     assert np.isfinite(with_rally.terrain.heights_at(place)).all()
     assert with_rally.terrain.extent.misses(*place[0]) == 0
     path.write_text(mission(rally="[{latitude: 36.65, longitude: -83.0}]"))
     with pytest.raises(RequestError, match=r"7:9: rally\.0: lies .* km outside of the terrain"):
-        gw.plan_route(read_mission(path))
+        gw.plan_route(read_request(path))
 
 
 def test_a_rally_point_on_another_continent_is_a_slip(tmp_path: Path) -> None:
     path = tmp_path / "m.yaml"
     path.write_text(mission(rally="[{latitude: 36.5, longitude: 84.3}]"))
     with pytest.raises(MissionFileError, match=r"7:9: rally\.0: lies \d+ km from the start"):
-        read_mission(path)
+        read_request(path)
 
 
-def circle_area(frame: LocalFrame, radius: float, margin: float, fence: bool = True) -> AreaModel:
+def circle_area(frame: LocalFrame, radius: float, margin: float, fence: bool = True) -> Area:
     here = {"latitude": frame.origin.latitude_deg, "longitude": frame.origin.longitude_deg, "radius": radius}
-    return AreaModel.model_validate({"name": "a", "circle": here, "margin": margin, "fence": fence})
+    return area_of(AreaModel.model_validate({"name": "a", "circle": here, "margin": margin, "fence": fence}))
 
 
 def border(prism: Prism, pieces: int = 7) -> np.ndarray[Any, Any]:
@@ -229,7 +230,7 @@ def fence_of_area(area: FenceArea, frame: LocalFrame) -> Fence:
     return Fence((FencePolygon(points, area.inclusion),))
 
 
-def breaches_along(area: AreaModel, frame: LocalFrame, keep_out: bool) -> list[Any]:
+def breaches_along(area: Area, frame: LocalFrame, keep_out: bool) -> list[Any]:
     """What the autopilots break who fly along the very border that the planner keeps to."""
     items = fence_items(fence_of_area(fence_area_of(area, frame, keep_out), frame))
     places = zip(*frame.to_geographic(border(prism_of(area, frame, keep_out))), strict=True)
@@ -271,10 +272,10 @@ def test_long_sides_hold_where_the_autopilots_see_them(latitude: float, out: boo
     corners = [
         (latitude + n, 9.0 + e) for n, e in ((-0.1, -wide), (0.1, -wide), (0.15, 0.2), (0.1, wide), (-0.1, wide))
     ]
-    area = AreaModel.model_validate({"name": "a", "polygon": corners, "margin": 2.0, "fence": True})
+    area = area_of(AreaModel.model_validate({"name": "a", "polygon": corners, "margin": 2.0, "fence": True}))
     assert breaches_along(area, frame, out) == []
     if abs(latitude) > 40:
-        plain = area.model_copy(update={"fence": False})
+        plain = replace(area, fence=False)
         items = fence_items(fence_of_area(fence_area_of(area, frame, out), frame))
         places = zip(*frame.to_geographic(border(prism_of(plain, frame, out))), strict=True)
         assert any(breaches(items, *place) for place in places)  # corners alone would not do
@@ -283,7 +284,7 @@ def test_long_sides_hold_where_the_autopilots_see_them(latitude: float, out: boo
 def test_areas_outside_of_the_fence_stay_as_they_were_drawn() -> None:
     frame = LocalFrame(GeoPoint(47.0, 9.0))
     corners = ((46.9, 8.0), (46.9, 10.0), (47.1, 10.0), (47.1, 8.0))
-    area = AreaModel.model_validate({"name": "a", "polygon": corners, "margin": 0.0})
+    area = area_of(AreaModel.model_validate({"name": "a", "polygon": corners, "margin": 0.0}))
     places = np.array(corners)
     assert prism_of(area, frame, True).corners == pytest.approx(frame.to_local(places[:, 0], places[:, 1]))
     ring = prism_of(circle_area(frame, 100.0, 0.0, fence=False), frame, False)
@@ -299,10 +300,10 @@ def test_a_circle_narrower_than_its_margin(tmp_path: Path) -> None:
 def test_a_fence_across_the_date_line_is_refused() -> None:
     frame = LocalFrame(GeoPoint(-17.0, 179.9))
     corners = [(-17.1, 179.7), (-17.1, -179.9), (-16.9, -179.9), (-16.9, 179.7)]
-    area = AreaModel.model_validate({"name": "reef", "polygon": corners, "fence": True})
+    area = area_of(AreaModel.model_validate({"name": "reef", "polygon": corners, "fence": True}))
     with pytest.raises(InputError, match="area 'reef' lies across the date line, where no autopilot's fence works"):
         prism_of(area, frame, True)
-    assert prism_of(area.model_copy(update={"fence": False}), frame, True).corners.shape == (4, 2)
+    assert prism_of(replace(area, fence=False), frame, True).corners.shape == (4, 2)
 
 
 @settings(max_examples=8, deadline=None)
@@ -311,12 +312,14 @@ def test_routes_never_break_their_own_fence(masts: list[tuple[int, int, int]]) -
     """Over flat ground among round keep-outs, inside a square: the uploaded items, tested every few metres."""
     frame = LocalFrame(GeoPoint(47.0, 9.0))
     areas = [
-        AreaModel.model_validate({"name": f"{i}", "circle": {"east": e, "north": n, "radius": r}, "fence": True})
+        area_of(
+            AreaModel.model_validate({"name": f"{i}", "circle": {"east": e, "north": n, "radius": r}, "fence": True})
+        )
         for i, (e, n, r) in enumerate(masts)
         if min(math.hypot(e + 700, n + 700), math.hypot(e - 700, n - 700)) > r + 60
     ]
     square = [[-900, -900], [900, -900], [900, 900], [-900, 900]]
-    field = AreaModel.model_validate({"name": "field", "polygon": {"east_north": square}, "fence": True})
+    field = area_of(AreaModel.model_validate({"name": "field", "polygon": {"east_north": square}, "fence": True}))
     request = flat_request(frame)
     request = replace(
         request,

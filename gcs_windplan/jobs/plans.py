@@ -1,0 +1,233 @@
+"""Planning a mission: one route, one for each cost, or one for each departure."""
+
+from __future__ import annotations
+
+import base64
+import html
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from gcs_windplan.jobs.mission import Mission, as_cost, as_moment
+from gcs_windplan.jobs.missionfile import read_mission
+from gcs_windplan.jobs.requests import request_of
+from gcs_windplan.jobs.winds import DAY
+from gcs_windplan.planning import planner
+from gcs_windplan.planning.cost import CostChoice
+from gcs_windplan.planning.request import Request
+from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
+
+if TYPE_CHECKING:
+    from gcs_windplan.mission import Mission as MissionItems
+    from gcs_windplan.planning.departures import Departure
+
+#: A mission to be planned: a value, a mission file, or the planner's own request.
+MissionWords: TypeAlias = "Mission | Request | str | os.PathLike[str]"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Plan(planner.Plan):
+    """A route for a mission, with its flight, its totals and what a pilot must know (`notes`).
+
+    `waypoints`, `legs` and `totals` are those of the flight; `battery` and `ways_home` are known where the airframe is.
+    Notebooks show its map, its profile and its totals.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> plan = gw.plan(mission)
+    >>> plan.waypoints[0].altitude
+    348.0
+    >>> plan.to_dict()["finish"], plan.to_geojson()["type"]
+    ('land', 'FeatureCollection')
+    """
+
+    @property
+    def items(self) -> MissionItems:
+        """The mission that flies it: its items, home, fence and rally points."""
+        from gcs_windplan.planning.export import mission_of
+
+        return mission_of(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its figures as JSON takes them: SI units, angles in degrees from true north, wind towards where it blows."""
+        from gcs_windplan.formats.summary import summary_of
+
+        return summary_of(self)
+
+    def to_geojson(self) -> dict[str, Any]:
+        """A FeatureCollection (RFC 7946) of its legs as flown, its stops, findings, areas and rally points."""
+        from gcs_windplan.assessment import assess_plan
+        from gcs_windplan.formats.geojson import geojson_of
+
+        return geojson_of(assess_plan(self))
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: totals, map and profile."""
+        from gcs_windplan.report import draw_map, draw_profile
+
+        pictures = [base64.b64encode(png).decode() for png in (draw_map([self]), draw_profile(self))]
+        shown = "".join(f'<img style="max-width:100%" src="data:image/png;base64,{png}">' for png in pictures)
+        notes = "".join(f"<p>{html.escape(note)}</p>" for note in self.notes)
+        return f"<p>{html.escape(repr(self))}</p>{shown}{notes}"
+
+
+def plan(
+    mission: MissionWords,
+    *,
+    cost: CostChoice | str | None = None,
+    keep_reserve: bool = True,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> Plan:
+    """Plan a mission's route.
+
+    `cost` takes the place of the mission's: distance, angle, hybrid, time or energy. Without `keep_reserve` a route
+    that breaks the battery's reserve is given all the same. `progress` is called with each stage (`print` will do), and
+    `cancel` stops the work.
+
+    Raises `InputError` (`RequestError`, `TerrainError`, `WindError`, ...) for what cannot be used, all such problems at
+    once; `NoRouteError` where no route exists, `BatteryError` where the best one breaks the battery's reserve, and
+    `CancelledError`.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> gw.plan(mission)
+    Plan('mission', time: 2 waypoints, 2.11 km in 2:56 min, clearance 48.0 m)
+    """
+    step = Steps(progress, cancel)
+    request = as_request(mission, step)
+    choice = request.cost if cost is None else as_cost(cost)
+    request = replace(request, cost=choice)
+    step("planning the route")
+    found = planner.plan_route(request) if keep_reserve else planner.plan_routes(request, [choice])[0]
+    step.raise_if_cancelled()
+    return _public(found)
+
+
+def compare(
+    mission: MissionWords,
+    costs: Sequence[CostChoice | str] | None = None,
+    *,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> list[Plan]:
+    """Plan a mission by several costs on one graph, so that they can be compared; no battery is too small for it.
+
+    Without `costs` by all of them: energy where the airframe is known, hybrid with the mission's own weights. Raises as
+    `plan` does, but no `BatteryError`.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> [plan.choice.name for plan in gw.compare(mission)]
+    ['distance', 'angle', 'hybrid', 'time']
+    """
+    step = Steps(progress, cancel)
+    request = as_request(mission, step)
+    step("planning by each cost")
+    found = planner.plan_routes(request, _choices(request, costs))
+    step.raise_if_cancelled()
+    return [_public(one) for one in found]
+
+
+def departures(
+    mission: MissionWords,
+    first: datetime | str,
+    last: datetime | str,
+    every: timedelta | str = "30min",
+    *,
+    cores: int | None = None,
+    progress: ProgressCallback | None = None,
+    cancel: CancelToken | None = None,
+) -> list[Departure]:
+    """The best route at each departure from `first` to `last` in the mission's forecast, in the order of their times.
+
+    Times are values with their time zone, texts such as `2026-05-01T06:00Z`, or times of day in UTC such as `06:00` on
+    the day of the mission's departure; steps are values, or texts such as `30min` or `1h`. They are planned on `cores`
+    cores, all if not said. Raises as `plan` does for what is wrong at every departure; one
+    that cannot be flown says so in its `reason`.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> found = gw.departures(mission, "2026-05-01T06:00Z", "2026-05-01T07:00Z", cores=1)
+    >>> [round(one.seconds) for one in found]
+    [176, 176, 176]
+    """
+    from gcs_windplan.jobs.moments import moments_of
+
+    step = Steps(progress, cancel)
+    if not isinstance(mission, Mission | Request):
+        mission = read_mission(mission)
+    moments = moments_of(first, last, every, as_moment(mission.departure))
+    lasting = (moments[-1] - moments[0]).total_seconds() + DAY
+    return list(swept(as_request(mission, step, moments[0], lasting), moments, cores, step))
+
+
+def swept(
+    request: Request, moments: Sequence[datetime], cores: int | None = None, step: Steps | None = None
+) -> Iterator[Departure]:
+    """The best route at each departure, as they are found."""
+    from gcs_windplan.planning.departures import sweep
+
+    step = step or Steps()
+    for number, one in enumerate(sweep(request, moments, cores=cores), start=1):
+        step("departures", number, len(moments))
+        yield one
+
+
+def as_request(
+    mission: MissionWords,
+    step: Steps | None = None,
+    departure: datetime | None = None,
+    lasting: float = DAY,
+) -> Request:
+    """The planner's request for a mission; a request stays as it is."""
+    if isinstance(mission, Request):
+        return mission
+    if not isinstance(mission, Mission):
+        mission = read_mission(mission)
+    if step is not None:
+        step("reading terrain and wind")
+    return request_of(mission, departure, lasting)
+
+
+class Steps:
+    """Reports the stages of a job, and stops it where it is told to."""
+
+    __slots__ = ("cancel", "progress")
+
+    def __init__(self, progress: ProgressCallback | None = None, cancel: CancelToken | None = None) -> None:
+        self.progress, self.cancel = progress, cancel
+
+    def __call__(self, stage: str, done: int = 0, total: int | None = None) -> None:
+        """A stage begins, or a step of it is done. Raises `CancelledError`."""
+        self.raise_if_cancelled()
+        if self.progress is not None:
+            self.progress(Progress(stage, done, total))
+
+    def raise_if_cancelled(self) -> None:
+        """Raise `CancelledError` if the job is to stop."""
+        if self.cancel is not None:
+            self.cancel.raise_if_cancelled()
+
+
+def _choices(request: Request, costs: Sequence[CostChoice | str] | None) -> list[CostChoice]:
+    """The costs that are asked for, or all that can be."""
+    own = request.cost if request.cost.name == "hybrid" else CostChoice("hybrid")
+    if costs is None:
+        costs = [name for name, cost in COSTS.items() if request.airframe is not None or not cost.needs_power]
+    return [one if isinstance(one, CostChoice) else own if one == "hybrid" else CostChoice(one) for one in costs]
+
+
+def _public(found: planner.Plan) -> Plan:
+    """The planner's route with what notebooks and scripts want of it."""
+    return Plan(**{field.name: getattr(found, field.name) for field in fields(found)})
