@@ -15,7 +15,7 @@ from gcs_windplan.jobs.missionfile import read_mission
 from gcs_windplan.jobs.requests import request_of
 from gcs_windplan.jobs.winds import DAY
 from gcs_windplan.planning import planner
-from gcs_windplan.planning.cost import CostChoice
+from gcs_windplan.planning.cost import COSTS, CostChoice
 from gcs_windplan.planning.request import Request
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
