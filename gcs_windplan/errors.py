@@ -17,8 +17,12 @@ WindplanError
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal, TypeAlias
+
+#: Why a wind is not known.
+WindReason: TypeAlias = Literal["area", "time", "members"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +71,28 @@ class TerrainError(InputError):
 
 
 class WindError(InputError):
-    """Wind that cannot be read, has gaps, or does not cover the place or time."""
+    """Wind that cannot be read, has gaps, or does not cover the place or time.
+
+    `reason`, where callers act on it: the "area" or the "time" is not covered, or the "members" of an ensemble have to
+    be chosen, among `members`.
+    """
+
+    def __init__(
+        self,
+        problems: str | Problem | Sequence[Problem],
+        reason: WindReason | None = None,
+        members: tuple[int, ...] = (),
+    ) -> None:
+        self.reason = reason
+        self.members = members
+        super().__init__(problems)
+
+    def in_files(self, files: Sequence[Path]) -> WindError:
+        """The same, its message beginning with the files unless it names one already."""
+        if any(problem.file for problem in self.problems):
+            return self
+        name = Path(", ".join(map(str, files)))
+        return WindError([replace(problem, file=name) for problem in self.problems], self.reason, self.members)
 
 
 class FormatError(InputError):

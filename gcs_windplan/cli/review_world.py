@@ -224,10 +224,13 @@ def _winds(
     try:
         return winds_by_name(air, frame, terrain, area, departure)
     except WindError as error:
-        holds, ensemble, _ = str(error).partition(": say `members")
-        if not ensemble:
+        if error.reason != "members":
             raise
-        text = f"{holds}: judge by a mission file that names it, with `wind: members: all` there (--by MISSION.yaml)"
+        holds = f"it holds an ensemble of {len(error.members)} members ({error.members[0]} to {error.members[-1]})"
+        text = (
+            f"{', '.join(air.names)}: {holds}: judge by a mission file that names it, with `wind: members: all` there"
+            " (--by MISSION.yaml)"
+        )
         raise InputError(Problem(text, "--wind")) from None
 
 

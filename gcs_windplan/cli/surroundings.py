@@ -9,12 +9,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from gcs_windplan.errors import InputError, Problem, WindError
+from gcs_windplan.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from gcs_windplan.geo.frame import LocalFrame
     from gcs_windplan.terrain import Extent, Terrain
-    from gcs_windplan.wind import LogLaw, PowerLaw, Wanted, WindField
+    from gcs_windplan.wind import ForecastQuery, LogLaw, PowerLaw, WindField
 
 T = TypeVar("T")
 
@@ -71,13 +71,8 @@ def winds_by_name(
     if len(air.names) == 1 and (plain := _CONSTANT.fullmatch(air.names[0])):
         field = _constant(plain[1], plain[2], frame)
         return (field if law is None else wind.ProfileWind(field, terrain.heights_at, law, terrain.resolution)), ()
-    wanted = _wanted(air, law, frame, terrain, area, departure)
-    try:
-        forecast = wind.read_forecast([Path(name) for name in air.names], wanted)
-    except WindError:
-        raise
-    except InputError as error:  # so far away that it lies outside of the local frame
-        raise WindError(f"{', '.join(air.names)}: its area is not the mission's ({error}); take another") from error
+    query = _forecast_query(air, law, frame, terrain, area, departure)
+    forecast = wind.read_forecast([Path(name) for name in air.names], query)
     return forecast.mean, forecast.gusts
 
 
@@ -121,19 +116,19 @@ def _law(text: str | None) -> PowerLaw | LogLaw | None:
     return wind.LogLaw(_REFERENCE, roughness)
 
 
-def _wanted(
+def _forecast_query(
     air: Air,
     law: PowerLaw | LogLaw | None,
     frame: LocalFrame,
     terrain: Terrain,
     area: Extent,
     departure: datetime | None,
-) -> Wanted:
+) -> ForecastQuery:
     """What is asked of the forecast's files."""
     from gcs_windplan import wind
 
     edge = terrain.extent
-    return wind.Wanted(
+    return wind.ForecastQuery(
         frame=frame,
         ground=terrain.heights_at,
         departure=departure,

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
-    from gcs_windplan.cli.wind_options import Asked, View
-    from gcs_windplan.geo.frame import GeoPoint
-    from gcs_windplan.wind.report.inventory import OpenFile
-    from gcs_windplan.wind.report.sounding import Altitude
-    from gcs_windplan.wind.sheets import Catalogue
+    from collections.abc import Sequence
+
+    from gcs_windplan.cli.wind_options import WindOptions
+    from gcs_windplan.wind.field_index import FieldIndex
 
 HELP = (
     "What is in forecast files that belong together (GRIB, NetCDF, answers of Open-Meteo): times, levels, members,"
-    " area, gaps, what would stop planning, and a small picture. With --at the wind at a place."
+    " area, gaps, what would stop planning, and a small picture. With --at the wind that planning has at a place."
 )
 
 
@@ -48,65 +45,48 @@ def wind(
     json: Annotated[bool, typer.Option("--json", help="Print for scripts, without the picture.")] = False,
 ) -> None:
     """Look into the files and print."""
-    from gcs_windplan.cli.wind_options import Asked, read_member, read_place, read_time, read_view
-    from gcs_windplan.wind.report.inventory import open_files
+    from gcs_windplan.cli.wind_options import read_options
+    from gcs_windplan.wind.reading import open_indexes
 
-    place = None if at is None else read_place(at)
-    asked = Asked(read_time(time), read_member(member))
-    view = read_view(level, around, None if place is None else place[0])
-    with _named(files), open_files(files) as opened:
-        if place is None:
-            _inventory(opened, asked, view, json)
+    options = read_options(at, time, level, around, member)
+    with open_indexes(files) as indexes:
+        if options.place is None:
+            _inventory(files, indexes, options, json)
         else:
-            _wind_at([file.catalogue for file in opened], *place, asked, view, json)
+            _wind_at(indexes, options, json)
 
 
-def _inventory(opened: Sequence[OpenFile], asked: Asked, view: View, as_json: bool) -> None:
+def _inventory(files: Sequence[Path], indexes: Sequence[FieldIndex], options: WindOptions, as_json: bool) -> None:
     """What is in the files, and a picture unless they have no wind to show."""
     from gcs_windplan.cli import wind_json, wind_picture, wind_tables
-    from gcs_windplan.cli.wind_options import Asked, View
+    from gcs_windplan.cli.wind_options import WindOptions
     from gcs_windplan.errors import WindError
-    from gcs_windplan.wind.report.inventory import take_inventory
+    from gcs_windplan.wind.inspect.inventory import take_inventory
 
     if as_json:
-        typer.echo(wind_json.format_inventory(take_inventory(opened)))
+        typer.echo(wind_json.format_inventory(take_inventory(files, indexes)))
         return
     try:
-        picture = wind_picture.draw([file.catalogue for file in opened], asked, view)
+        picture = wind_picture.draw(indexes, options)
     except WindError as error:
-        if asked != Asked() or view != View():
+        if options != WindOptions():
             raise
         picture = wind_picture.Picture([], [f"no picture: {error}"])
-    wind_tables.print_inventory(take_inventory(opened))
+    wind_tables.print_inventory(take_inventory(files, indexes))
     wind_tables.print_picture(picture)
 
 
-def _wind_at(
-    catalogues: Sequence[Catalogue], place: GeoPoint, altitude: Altitude | None, asked: Asked, view: View, as_json: bool
-) -> None:
+def _wind_at(indexes: Sequence[FieldIndex], options: WindOptions, as_json: bool) -> None:
     """The wind at a place, and a picture of its surroundings where that is wanted."""
     from gcs_windplan.cli import wind_json, wind_picture, wind_tables
-    from gcs_windplan.wind.report.sounding import sounding_at, spot_at
+    from gcs_windplan.wind.inspect.sounding import take_sounding
 
-    found = sounding_at(catalogues, place, *asked) if altitude is None else spot_at(catalogues, place, altitude, *asked)
+    assert options.place is not None
+    sounding = take_sounding(indexes, options.place, options.moment, options.members, options.height)
     if as_json:
-        typer.echo(wind_json.format_wind(found))
+        typer.echo(wind_json.format_sounding(sounding))
         return
-    picture = None if view.radius is None else wind_picture.draw(catalogues, asked, view)
-    wind_tables.print_wind(found)
+    picture = None if options.radius is None else wind_picture.draw(indexes, options)
+    wind_tables.print_sounding(sounding)
     if picture is not None:
         wind_tables.print_picture(picture)
-
-
-@contextmanager
-def _named(files: Sequence[Path]) -> Iterator[None]:
-    """Errors begin with the files, as those of planning do."""
-    from gcs_windplan.errors import WindError
-
-    try:
-        yield
-    except WindError as error:
-        if any(str(error).startswith(str(file)) for file in files):
-            raise
-        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-        raise WindError(f"{files[0]}{more}: {error}") from error

@@ -4,65 +4,83 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 
-from gcs_windplan.arrays import FloatArray
-from gcs_windplan.wind.report.inventory import Count, FileFacts, GridFacts, Holding, Inventory
-from gcs_windplan.wind.report.series import Series
-from gcs_windplan.wind.report.sounding import Here, Sounding, Spot
-from gcs_windplan.wind.report.spread import direction_from
-from gcs_windplan.wind.report.trial import Trial
-from gcs_windplan.wind.sheets import Level
+from gcs_windplan.cli.wind_tables import direction_from
+from gcs_windplan.wind.field_index import Level
+from gcs_windplan.wind.inspect.inventory import Inventory
+from gcs_windplan.wind.inspect.sounding import HeightWind, LevelWind, Sounding
 
 
 def format_inventory(inventory: Inventory) -> str:
-    """What is in the files. Times are ISO 8601 in UTC, levels in m or Pa, steps in seconds, spacings in degrees, m."""
+    """What is in the files. Times are ISO 8601 in UTC, levels in m or Pa, spacings in m."""
+    planning = inventory.planning
     return _dumped(
         {
-            "files": [_file(file) for file in inventory.files],
-            "runs": [_time(run) for run in inventory.runs],
-            "times": {**_series(inventory.times), "with_whole_wind": inventory.whole},
-            "members": list(inventory.members),
-            "also_without_member": inventory.alone and bool(inventory.members),
-            "quantities": [_holding(holding) for holding in inventory.holdings],
-            "lone": [_holding(holding) for holding in inventory.lone],
-            "grids": [_grid(grid) for grid in inventory.grids],
-            "missing": _count(inventory.count),
-            "planning": _trial(inventory.trial),
+            "files": [asdict(file) for file in inventory.files],
+            "runs": _times(inventory.runs),
+            "times": {
+                "count": len(inventory.times),
+                "all": _times(inventory.times),
+                "gaps": [_times((gap.after, gap.before)) for gap in inventory.gaps],
+                "with_whole_wind": inventory.with_whole_wind,
+            },
+            "members": inventory.members,
+            "also_without_member": inventory.also_without_member and bool(inventory.members),
+            "quantities": [
+                {**asdict(one), "levels": [_level(level) for level in one.levels]} for one in inventory.quantities
+            ],
+            "grids": [asdict(grid) for grid in inventory.grids],
+            "fields_read": inventory.fields_read,
+            "broken": inventory.broken,
+            "planning": {
+                **asdict(planning),
+                "possible": not planning.obstacle,
+                "departures": planning.departures and _times(planning.departures),
+            },
         }
     )
 
 
-def format_wind(found: Sounding | Spot) -> str:
+def format_sounding(found: Sounding) -> str:
     """The wind at a place: m, m/s, degrees clockwise from true north."""
-    document = _here(found.here)
-    if isinstance(found, Spot):
-        winds = _winds(found.members, found.winds)
-        lower = None if found.lower is None else _level(found.lower[0])
-        height = {"height": _known(found.height), "above_ground": _known(found.above_ground)}
-        return _dumped({**document, **height, "between": [lower, _level(found.upper[0])], "winds": winds})
-    levels = [
-        {
-            "level": _level(row.level),
-            "heights": [_known(height) for height in row.heights.tolist()],
-            "used_in_planning": row.planned and not row.hidden,
-            "below_ground": row.hidden,
-            "winds": _winds(row.members, row.winds),
-        }
-        for row in found.rows
+    document = {
+        "latitude": found.place.latitude_deg,
+        "longitude": found.place.longitude_deg,
+        "time": None if found.moment is None else _times([found.moment])[0],
+        "between_times": _times(found.times),
+        "ground": _known(found.ground),
+        "gusts": [{"member": m, "gust": gust} for m, gust in zip(found.members, found.gusts.tolist(), strict=False)],
+        "uses": found.uses,
+    }
+    if found.at_height is None:
+        levels = [{"level": _level(one.level), **_row(found.members, one)} for one in found.levels]
+        return _dumped({**document, "levels": levels})
+    lower, upper = found.at_height.lower, found.at_height.upper
+    between = [lower and _level(lower.level), _level(upper.level)]
+    return _dumped({**document, **_row(found.members, found.at_height), "between": between})
+
+
+def _row(members: tuple[int | None, ...], one: LevelWind | HeightWind) -> dict[str, Any]:
+    numbers = np.column_stack([one.winds, np.hypot(*one.winds.T), direction_from(one.winds)])
+    winds = [
+        {"member": member, **dict(zip(("u", "v", "speed", "from"), map(_known, row), strict=True))}
+        for member, row in zip(members, numbers.tolist(), strict=True)
     ]
-    return _dumped({**document, "levels": levels})
+    return {"height": _known(one.height), "above_ground": _known(one.above_ground), "winds": winds}
 
 
 def _dumped(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def _time(seconds: float) -> str:
-    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%SZ}"
+def _times(times: Sequence[float]) -> list[str]:
+    return [f"{datetime.fromtimestamp(time, UTC):%Y-%m-%dT%H:%M:%SZ}" for time in times]
 
 
 def _known(value: float) -> float | None:
@@ -70,75 +88,4 @@ def _known(value: float) -> float | None:
 
 
 def _level(level: Level) -> dict[str, Any]:
-    return {"kind": level.kind, "value": level.value, "text": str(level)}
-
-
-def _file(file: FileFacts) -> dict[str, Any]:
-    return {
-        "path": str(file.path), "format": file.format, "title": file.title, "sheets": file.sheets,
-        "unused": list(file.unused),
-    }  # fmt: skip
-
-
-def _series(series: Series) -> dict[str, Any]:
-    return {
-        "count": len(series.times),
-        "all": [_time(time) for time in series.times],
-        "steps": [{"seconds": step, "until": _time(until)} for step, until in series.steps],
-        "gaps": [{"first": _time(g.first), "last": _time(g.last), "count": g.count} for g in series.gaps],
-    }
-
-
-def _holding(holding: Holding) -> dict[str, Any]:
-    return {
-        "quantity": holding.quantity, "names": list(holding.names), "units": holding.units,
-        "levels": [_level(level) for level in holding.levels], "times": holding.times, "members": holding.members,
-        "sheets": holding.sheets, "grid": holding.grid,
-    }  # fmt: skip
-
-
-def _grid(grid: GridFacts) -> dict[str, Any]:
-    extent, spacing = grid.extent, grid.spacing
-    return {
-        "name": grid.name, "rows": grid.rows, "columns": grid.columns,
-        "south": extent.south, "north": extent.north, "west": extent.west, "east": extent.east,
-        "all_longitudes": extent.round,
-        "spacing_degrees": None if spacing.degrees is None else list(spacing.degrees),
-        "spacing_metres": list(spacing.metres), "u_v_turned": grid.turned,
-    }  # fmt: skip
-
-
-def _count(count: Count) -> dict[str, Any]:
-    return {
-        "sheets": count.sheets, "read": count.read, "sampled": count.sampled,
-        "quantities": {one.quantity: {"values": one.values, "missing": one.missing} for one in count.found},
-        "broken": list(count.broken),
-    }  # fmt: skip
-
-
-def _trial(trial: Trial) -> dict[str, Any]:
-    return {
-        "possible": not trial.obstacle, "obstacle": trial.obstacle or None, "uses": trial.said or None,
-        "departures": None if trial.departures is None else [_time(time) for time in trial.departures],
-        "choose_members_of": list(trial.members), "all_tried": trial.whole,
-    }  # fmt: skip
-
-
-def _here(here: Here) -> dict[str, Any]:
-    return {
-        "latitude": here.place.latitude_deg, "longitude": here.place.longitude_deg,
-        "time": None if here.moment is None else _time(here.moment),
-        "between_times": [_time(time) for time in here.times],
-        "ground": _known(here.ground),
-        "gusts": [{"member": member, "gust": gust} for member, gust in here.gusts.items()],
-    }  # fmt: skip
-
-
-def _winds(members: tuple[int | None, ...], winds: FloatArray) -> list[dict[str, Any]]:
-    speeds, directions = np.hypot(winds[:, 0], winds[:, 1]), direction_from(winds)
-    return [
-        {"member": member, "u": _known(u), "v": _known(v), "speed": _known(speed), "from": _known(direction)}
-        for member, (u, v), speed, direction in zip(
-            members, winds.tolist(), speeds.tolist(), directions.tolist(), strict=True
-        )
-    ]
+    return {**asdict(level), "text": str(level)}

@@ -103,7 +103,7 @@ class Dem:
 
         NaN outside of the outermost samples and inside of triangles with an unknown corner.
         """
-        return heightfield.heights_at(self.heights, self.grid_map.coefficients, self._scaling, as_rows(places))
+        return heightfield.heights_at(self.heights, self.grid_map.coefficients, self._scaling, as_kernel_points(places))
 
     def leg_heights(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """The smallest and the largest height of legs (n, 3) over the ground, shape (n, 2) [m].
@@ -113,7 +113,7 @@ class Dem:
         length.
         """
         return heightfield.leg_heights(
-            self.heights, self.grid_map.coefficients, self._scaling, as_rows(starts), as_rows(ends)
+            self.heights, self.grid_map.coefficients, self._scaling, as_kernel_points(starts), as_kernel_points(ends)
         )
 
     def raster(self, extent: Extent, cell: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -161,6 +161,6 @@ def _grid_shape(heights: FloatArray, name: str) -> tuple[int, int]:
     return shape[0], shape[1]
 
 
-def as_rows(places: FloatArray) -> FloatArray:
+def as_kernel_points(places: FloatArray) -> FloatArray:
     """Places as the kernels take them: float64, C order, one a row."""
     return np.ascontiguousarray(np.atleast_2d(places), dtype=np.float64)

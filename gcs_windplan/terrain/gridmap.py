@@ -17,6 +17,7 @@ from numpy.polynomial.polynomial import polyval2d
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import TerrainError
+from gcs_windplan.geo.fit import PolynomialFit, chebyshev_points
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.terrain.surface import Extent
 
@@ -25,7 +26,7 @@ STRAIGHTNESS = 0.05  # [m] the most by which a piece of a leg may bulge when it 
 HIGHEST_DEGREE = 6
 FARTHEST = 600_000.0  # [m] from the origin; LocalFrame itself ends at 1000 km
 
-Chain: TypeAlias = Callable[[FloatArray], FloatArray]
+Projection: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 class Georeference(Protocol):
@@ -80,24 +81,25 @@ class GridMap:
         return cls(coefficients, extent)
 
     @classmethod
-    def fitted(cls, chain: Chain, extent: Extent, name: str) -> GridMap:
-        """The lowest degree that follows `chain`, (n, 2) to (n, 2), to 1 cm inside of `extent`.
+    def fitted(cls, projection: Projection, extent: Extent, name: str) -> GridMap:
+        """The lowest degree that follows `projection`, (n, 2) to (n, 2), to 1 cm inside of `extent`.
 
         Judged at places that took no part in the fit. Raises TerrainError if degree 6 does not do.
         """
         rng = np.random.default_rng(1)
-        knots = np.cos(np.pi * (np.arange(16) + 0.5) / 16)  # Chebyshev's: no runaway at the rim
-        taught = _spread(np.stack(np.meshgrid(knots, knots), axis=-1).reshape(-1, 2), extent)
+        centre, half_sizes = _centre(extent), _half_sizes(extent)
         rim = [(a, b) for a in (-1.0, 0.1, 1.0) for b in (-1.0, -0.1, 1.0)]
-        asked = _spread(np.concatenate([rng.uniform(-1, 1, (400, 2)), np.array(rim)]), extent)
-        lesson, answer = chain(taught), chain(asked)
-        if not (np.isfinite(lesson).all() and np.isfinite(answer).all()):
+        check_points = centre + np.concatenate([rng.uniform(-1, 1, (400, 2)), np.array(rim)]) * half_sizes
+        fit_points = chebyshev_points(centre, half_sizes, 16)
+        fit_values, check_values = projection(fit_points), projection(check_points)
+        if not (np.isfinite(fit_values).all() and np.isfinite(check_values).all()):
             raise TerrainError(f"{name}: reaches beyond where its projection holds; plan a smaller area")
         error = math.inf
         for degree in range(1, HIGHEST_DEGREE + 1):
-            grid_map = cls(_least_squares(_scaled(taught, extent), lesson, degree), extent)
-            strayed = (grid_map.to_grid(asked) - answer) @ np.linalg.inv(grid_map._slopes()).T
-            error = float(np.max(np.hypot(strayed[:, 0], strayed[:, 1])))
+            fit = PolynomialFit.least_squares(centre, half_sizes, degree, fit_points, fit_values)
+            grid_map = cls(fit.matrix, extent)
+            residual = fit.residual(check_points, check_values) @ np.linalg.inv(grid_map._slopes()).T
+            error = float(np.max(np.hypot(residual[:, 0], residual[:, 1])))
             if error < MAP_ERROR:
                 return grid_map
         raise TerrainError(
@@ -107,14 +109,13 @@ class GridMap:
 
     def to_grid(self, places: FloatArray) -> FloatArray:
         """Columns and rows of local places (n, 2), shape (n, 2); meaningless outside of the extent."""
-        scaled = _scaled(places, self.extent)
-        return np.stack([polyval2d(scaled[:, 0], scaled[:, 1], part) for part in self.coefficients], axis=-1)
+        u, v = ((places[:, :2] - _centre(self.extent)) / _half_sizes(self.extent)).T
+        return np.stack([polyval2d(u, v, part) for part in self.coefficients], axis=-1)
 
     def to_local(self, cells: FloatArray) -> FloatArray:
         """Local places (n, 2) of columns and rows (n, 2), by Newton's method with fixed slopes."""
-        centre = _spread(np.zeros((1, 2)), self.extent)
         slopes = np.linalg.inv(self._slopes())
-        places = np.repeat(centre, len(cells), axis=0)
+        places = np.tile(_centre(self.extent), (len(cells), 1))
         for _ in range(50):
             step = (cells - self.to_grid(places)) @ slopes.T
             places = places + step
@@ -165,10 +166,10 @@ def fit_grid_map(georeference: Georeference, frame: LocalFrame, shape: tuple[int
     if max(-west, east, -south, north) > FARTHEST:
         raise TerrainError(f"{name}: too large for one local frame; give an area of the mission's size")
 
-    def chain(local: FloatArray) -> FloatArray:
+    def projection(local: FloatArray) -> FloatArray:
         return georeference.to_grid(*frame.to_geographic(local))
 
-    return GridMap.fitted(chain, extent, name)
+    return GridMap.fitted(projection, extent, name)
 
 
 def _outline(shape: tuple[int, int]) -> FloatArray:
@@ -186,24 +187,3 @@ def _centre(box: Extent) -> FloatArray:
 
 def _half_sizes(box: Extent) -> FloatArray:
     return np.array([box.east - box.west, box.north - box.south]) / 2
-
-
-def _scaled(places: FloatArray, box: Extent) -> FloatArray:
-    scaled: FloatArray = (places[:, :2] - _centre(box)) / _half_sizes(box)
-    return scaled
-
-
-def _spread(unit: FloatArray, box: Extent) -> FloatArray:
-    """Places of numbers between -1 and 1, the way back from `_scaled`."""
-    spread: FloatArray = _centre(box) + unit * _half_sizes(box)
-    return spread
-
-
-def _least_squares(scaled: FloatArray, cells: FloatArray, degree: int) -> FloatArray:
-    terms = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    design = np.stack([scaled[:, 0] ** i * scaled[:, 1] ** j for i, j in terms], axis=-1)
-    solution = np.linalg.lstsq(design, cells, rcond=None)[0]
-    coefficients = np.zeros((2, degree + 1, degree + 1))
-    for (i, j), pair in zip(terms, solution, strict=True):
-        coefficients[:, i, j] = pair
-    return coefficients

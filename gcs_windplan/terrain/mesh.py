@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import TerrainError
 from gcs_windplan.kernels import meshes, plan_bins
-from gcs_windplan.terrain.dem import as_rows
+from gcs_windplan.terrain.dem import as_kernel_points
 from gcs_windplan.terrain.surface import Extent
 
 
@@ -83,7 +83,7 @@ class MeshTerrain:
     def heights_at(self, places: FloatArray) -> FloatArray:
         """The highest surface at local places (n, 2 or more) [m], shape (n,); NaN where there is none."""
         bins = self._bins
-        return meshes.surface_heights(self.triangles, bins.grid, bins.heads, bins.members, as_rows(places))
+        return meshes.surface_heights(self.triangles, bins.grid, bins.heads, bins.members, as_kernel_points(places))
 
     def leg_heights(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """The smallest and the largest height of legs (n, 3) over the ground, exact, shape (n, 2) [m].
@@ -93,7 +93,7 @@ class MeshTerrain:
         """
         bins = self._bins
         return meshes.surface_leg_heights(
-            self.triangles, bins.grid, bins.heads, bins.members, as_rows(starts), as_rows(ends)
+            self.triangles, bins.grid, bins.heads, bins.members, as_kernel_points(starts), as_kernel_points(ends)
         )
 
 

@@ -29,17 +29,17 @@ def read_mesh(path: str | Path) -> tuple[FloatArray, IntArray]:
     """
     path = Path(path)
     if not path.is_file():
-        raise _trouble(path, "there is no such file")
+        raise _file_error(path, "there is no such file")
     if path.suffix.lower() not in SUFFIXES:
-        raise _trouble(path, f"meshes are read from files named {', '.join(SUFFIXES)}")
+        raise _file_error(path, f"meshes are read from files named {', '.join(SUFFIXES)}")
     try:
         mesh = trimesh.load_scene(path, process=False).to_mesh()  # process drops faces that are not finite
     except Exception as error:  # trimesh's readers raise whatever their parsers raise
-        raise _trouble(path, f"not a mesh that trimesh can read ({error})") from error
+        raise _file_error(path, f"not a mesh that trimesh can read ({error})") from error
     if len(mesh.faces) == 0:
-        raise _trouble(path, "no faces in it; a point cloud has to be triangulated first")
+        raise _file_error(path, "no faces in it; a point cloud has to be triangulated first")
     if not np.isfinite(mesh.vertices[mesh.faces]).all():
-        raise _trouble(path, "a vertex whose coordinates are not finite numbers")
+        raise _file_error(path, "a vertex whose coordinates are not finite numbers")
     mesh.merge_vertices(merge_tex=True, merge_norm=True)
     return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
 
@@ -54,5 +54,5 @@ def open_sides(vertices: FloatArray, faces: IntArray) -> int:
     return max(int((counts != 2).sum()), 1)
 
 
-def _trouble(path: Path, message: str) -> TerrainError:
+def _file_error(path: Path, message: str) -> TerrainError:
     return TerrainError(Problem(message, file=path))

@@ -13,7 +13,7 @@ from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import TerrainError
 from gcs_windplan.kernels import solids
 from gcs_windplan.terrain.boxtree import BoxTree
-from gcs_windplan.terrain.dem import as_rows
+from gcs_windplan.terrain.dem import as_kernel_points
 from gcs_windplan.terrain.mesh import PlanBins, mesh_triangles
 
 
@@ -100,7 +100,7 @@ class Obstacles:
         return self._tops(places, np.array([max(item.margin, minimum) for item in self.items]))
 
     def _tops(self, places: FloatArray, lifts: FloatArray) -> FloatArray:
-        places = as_rows(places)
+        places = as_kernel_points(places)
         if not self.items:
             return np.full(len(places), -np.inf)
         bins = self._bins
@@ -115,7 +115,7 @@ class Obstacles:
         pierces or runs inside of an obstacle counts as 1 mm inside, so that it is negative with no margin
         too. +inf without obstacles.
         """
-        starts, ends = as_rows(starts), as_rows(ends)
+        starts, ends = as_kernel_points(starts), as_kernel_points(ends)
         if not self.items:
             return np.full(len(starts), np.inf)
         bins, tree = self._bins, self._tree

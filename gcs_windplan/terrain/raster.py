@@ -21,7 +21,7 @@ from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import TerrainError
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.terrain.dem import Dem
-from gcs_windplan.terrain.rastertile import RasterTile, describe, trouble
+from gcs_windplan.terrain.rastertile import RasterTile, describe, file_error
 from gcs_windplan.terrain.surface import Extent
 from gcs_windplan.terrain.window import Window, covering_window
 
@@ -114,7 +114,7 @@ def _part(tile: RasterTile, window: Window) -> ProjectedGrid:
 def _place(tile: RasterTile, first: RasterTile) -> tuple[int, int]:
     """Row and column of a tile's first sample, counted from the first tile's; TerrainError if none."""
     if tile.crs != first.crs:
-        raise trouble(tile.path, f"another projection than {first.path.name}; {_cure(first)}")
+        raise file_error(tile.path, f"another projection than {first.path.name}; {_advice(first)}")
     a, b, c, d, e, f = first.transform
     size = max(*tile.shape, *first.shape)
     cell = max(abs(a), abs(b), abs(d), abs(e))
@@ -126,15 +126,15 @@ def _place(tile: RasterTile, first: RasterTile) -> tuple[int, int]:
     column, row = (e * dx - b * dy) / (a * e - b * d), (a * dy - d * dx) / (a * e - b * d)
     apart = max(abs(column - round(column)), abs(row - round(row)))
     if drift > SAME_GRID or apart > SAME_GRID:
-        raise trouble(
+        raise file_error(
             tile.path,
             f"another grid than {first.path.name} (cells of {tile.transform[0]:.9g} against {a:.9g}, "
-            f"samples {apart:.2f} cells apart); {_cure(first)}",
+            f"samples {apart:.2f} cells apart); {_advice(first)}",
         )
     return round(row), round(column)
 
 
-def _cure(first: RasterTile) -> str:
+def _advice(first: RasterTile) -> str:
     return f"bring all tiles onto one grid: gdalwarp -t_srs {first.crs.to_string()[:40]} ... one.tif"
 
 

@@ -57,7 +57,7 @@ class RasterTile:
 
     def read(self, window: Window, nodata: float | None) -> FloatArray:
         """The heights of a block [m], NaN where the file's mask, its nodata value or `nodata` says so."""
-        with opened(self.path, self.source) as dataset:
+        with open_raster(self.path, self.source) as dataset:
             block = RasterWindow(window.column, window.row, window.columns, window.rows)
             raw = dataset.read(1, window=block, masked=True)
         heights = np.ma.getdata(raw).astype(np.float64)
@@ -74,13 +74,13 @@ class RasterTile:
 def describe(path: Path) -> RasterTile:
     """What a file says of its first band; TerrainError, with the file, if it is no usable height grid."""
     source = _source(path)
-    with opened(path, source) as dataset:
+    with open_raster(path, source) as dataset:
         if dataset.count == 0:
-            raise trouble(path, "a container without a band of its own; name one of its parts")
+            raise file_error(path, "a container without a band of its own; name one of its parts")
         if dataset.crs is None or dataset.transform.is_identity:
-            raise trouble(path, "no projection in the file; add one: gdal_edit.py -a_srs EPSG:... -a_ullr ...")
+            raise file_error(path, "no projection in the file; add one: gdal_edit.py -a_srs EPSG:... -a_ullr ...")
         if dataset.colorinterp[0] in (ColorInterp.red, ColorInterp.palette):
-            raise trouble(path, "a coloured picture, not heights")
+            raise file_error(path, "a coloured picture, not heights")
         wkt = dataset.crs.to_wkt()
         return RasterTile(
             path=path,
@@ -97,7 +97,7 @@ def describe(path: Path) -> RasterTile:
 
 
 @contextmanager
-def opened(path: Path, source: str) -> Iterator[Any]:
+def open_raster(path: Path, source: str) -> Iterator[Any]:
     """An open dataset; whatever rasterio raises or warns of becomes a TerrainError with the file."""
     try:
         with warnings.catch_warnings():
@@ -107,7 +107,7 @@ def opened(path: Path, source: str) -> Iterator[Any]:
                 yield dataset
     except RasterioError as error:
         cause = error.__cause__ or error
-        raise trouble(path, f"not a raster that GDAL can read, or a damaged one ({cause})") from error
+        raise file_error(path, f"not a raster that GDAL can read, or a damaged one ({cause})") from error
 
 
 def is_hgt(path: Path) -> bool:
@@ -115,7 +115,7 @@ def is_hgt(path: Path) -> bool:
     return path.name.lower().endswith((".hgt", ".hgt.zip"))
 
 
-def trouble(path: Path, message: str) -> TerrainError:
+def file_error(path: Path, message: str) -> TerrainError:
     """A TerrainError about a file."""
     return TerrainError(Problem(message, file=path))
 
@@ -123,18 +123,18 @@ def trouble(path: Path, message: str) -> TerrainError:
 def _source(path: Path) -> str:
     """What GDAL is to open: the file, or the one raster inside of a zip."""
     if not path.is_file():
-        raise trouble(path, "there is no such file")
+        raise file_error(path, "there is no such file")
     if path.stat().st_size == 0:
-        raise trouble(path, "an empty file; fetch it again")
+        raise file_error(path, "an empty file; fetch it again")
     inside = _zipped(path) if path.suffix.lower() == ".zip" else None
     for name in (path.name, inside):
         if name is not None and name.lower().endswith((".hgt", ".hgt.zip")) and not _HGT_NAME.match(name):
-            raise trouble(path, f"an HGT file is named after its corner, as S36E149.hgt is; {name} is not")
+            raise file_error(path, f"an HGT file is named after its corner, as S36E149.hgt is; {name} is not")
     if inside is None:
         return str(path)
     own, within = (_HGT_NAME.match(Path(name).name) for name in (path.name, inside))
     if own and within and own.group().upper() != within.group().upper():
-        raise trouble(path, f"holds {inside}, which is another tile; rename the one that is wrong")
+        raise file_error(path, f"holds {inside}, which is another tile; rename the one that is wrong")
     return f"/vsizip/{path.resolve()}/{inside}"
 
 
@@ -144,10 +144,10 @@ def _zipped(path: Path) -> str:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
     except (zipfile.BadZipFile, OSError) as error:
-        raise trouble(path, f"not a zip file, or a damaged one ({error}); fetch it again") from error
+        raise file_error(path, f"not a zip file, or a damaged one ({error}); fetch it again") from error
     rasters = [name for name in names if name.lower().endswith((".hgt", ".tif", ".tiff"))]
     if len(rasters) != 1:
-        raise trouble(path, f"{len(rasters)} rasters in the zip; unpack it and name those you mean")
+        raise file_error(path, f"{len(rasters)} rasters in the zip; unpack it and name those you mean")
     return rasters[0]
 
 
@@ -158,7 +158,7 @@ def _to_metres(path: Path, unit: str | None, wkt: str) -> float:
     for words, factor in ((_METRES, 1.0), (_FEET, INTERNATIONAL_FOOT), (_SURVEY_FEET, US_SURVEY_FOOT)):
         if word in words:
             return factor
-    raise trouble(path, f"heights in {word!r}, neither metres nor feet; say which: gdal_edit.py -units m")
+    raise file_error(path, f"heights in {word!r}, neither metres nor feet; say which: gdal_edit.py -units m")
 
 
 def _vertical_datum(path: Path, wkt: str) -> str:

@@ -19,7 +19,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError
 from gcs_windplan.kernels import area_test
-from gcs_windplan.terrain.dem import Dem, as_rows
+from gcs_windplan.terrain.dem import Dem, as_kernel_points
 from gcs_windplan.terrain.mesh import MeshTerrain, PlanBins
 
 
@@ -42,7 +42,14 @@ def sampled_collisions(
     triangles = _triangles(ground)
     bins = PlanBins.over(triangles)
     return area_test.sampled_collisions(
-        triangles, bins.grid, bins.heads, bins.members, as_rows(starts), as_rows(ends), step, tolerance
+        triangles,
+        bins.grid,
+        bins.heads,
+        bins.members,
+        as_kernel_points(starts),
+        as_kernel_points(ends),
+        step,
+        tolerance,
     )
 
 

@@ -37,7 +37,7 @@ def covering_window(grid: Georeference, frame: LocalFrame, area: Extent, shape: 
 
     Raises TerrainError that says how far away the grid lies if they do not overlap.
     """
-    cells = grid.to_grid(*frame.to_geographic(_net(area)))
+    cells = grid.to_grid(*frame.to_geographic(_sample_points(area)))
     if not np.isfinite(cells).all():
         raise TerrainError(f"{name}: {_how_far(grid, frame, area, shape)}")
     first = np.maximum(np.floor(cells.min(axis=0)).astype(int) - MARGIN, 0)
@@ -48,7 +48,7 @@ def covering_window(grid: Georeference, frame: LocalFrame, area: Extent, shape: 
     return Window(int(first[1]), int(first[0]), int(last[1] - first[1]) + 1, int(last[0] - first[0]) + 1)
 
 
-def _net(area: Extent) -> FloatArray:
+def _sample_points(area: Extent) -> FloatArray:
     """A net of places over a box: what is extreme in one projection need not be a corner in another."""
     x, y = np.meshgrid(np.linspace(area.west, area.east, 21), np.linspace(area.south, area.north, 21))
     return np.stack([x.ravel(), y.ravel()], axis=-1)

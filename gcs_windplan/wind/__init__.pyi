@@ -7,11 +7,11 @@ from .analytic import Rotation as Rotation
 from .field import Ground as Ground
 from .field import WindField as WindField
 from .forecast import Forecast as Forecast
-from .forecast import Wanted as Wanted
-from .forecast import read_forecast as read_forecast
+from .forecast import ForecastQuery as ForecastQuery
 from .gridded import GriddedWind as GriddedWind
 from .limited import LimitedWind as LimitedWind
 from .profile import LogLaw as LogLaw
 from .profile import PowerLaw as PowerLaw
 from .profile import ProfileLaw as ProfileLaw
 from .profile import ProfileWind as ProfileWind
+from .reading import read_forecast as read_forecast

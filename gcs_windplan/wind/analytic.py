@@ -16,7 +16,7 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import LocalFrame
-from gcs_windplan.wind.chart import Chart, to_grid
+from gcs_windplan.geo.inverse import InverseProjection, to_grid_north
 from gcs_windplan.wind.field import Steady
 
 #: How (14) is read, see `Jet`.
@@ -56,12 +56,12 @@ class ConstantWind(Steady):
     east: float
     north: float
     frame: LocalFrame | None = None
-    _chart: Chart | None = field(init=False, repr=False, compare=False)
+    _inverse: InverseProjection | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.east) and math.isfinite(self.north)):
             raise WindError(f"a constant wind of ({self.east}, {self.north}) m/s is not finite")
-        object.__setattr__(self, "_chart", Chart(self.frame) if self.frame and self.speed > 0 else None)
+        object.__setattr__(self, "_inverse", InverseProjection(self.frame) if self.frame and self.speed > 0 else None)
 
     @classmethod
     def from_direction(cls, speed: float, from_deg: float, frame: LocalFrame | None = None) -> ConstantWind:
@@ -97,7 +97,7 @@ class ConstantWind(Steady):
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3); the upward component is 0."""
         wind = np.tile([self.east, self.north, 0.0], (len(points), 1))
-        return wind if self._chart is None else to_grid(wind, self._chart.at(points)[:, 2])
+        return wind if self._inverse is None else to_grid_north(wind, self._inverse.at(points)[:, 2])
 
 
 @dataclass(frozen=True, slots=True)

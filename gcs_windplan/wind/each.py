@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.wind.field import WindField
 
-if TYPE_CHECKING:
-    from gcs_windplan.wind.limited import LimitedWind
+
+@runtime_checkable
+class Sharing(Protocol):
+    """A kind of wind whose members can share work."""
+
+    @classmethod
+    def at_members(cls, members: Sequence[Any], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+        """The winds (n, 3 m) of m members of this kind at points (n, 3), one after the other along the last axis."""
 
 
 def at_each(winds: Sequence[WindField], points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
@@ -19,29 +25,7 @@ def at_each(winds: Sequence[WindField], points: FloatArray, seconds: float | Flo
 
     Raises `WindError` as their `at` does.
     """
-    if len(winds) == 1:
-        return winds[0].at(points, seconds)
-    from gcs_windplan.wind.gridded import GriddedWind, at_members
-    from gcs_windplan.wind.limited import LimitedWind
-
-    limited = [wind for wind in winds if isinstance(wind, LimitedWind)]
-    if len(limited) == len(winds):
-        return _limited_at_each(limited, points, seconds)
-
-    grids = [wind for wind in winds if isinstance(wind, GriddedWind)]
-    if len(grids) == len(winds) and all(grid.shares_with(grids[0]) for grid in grids):
-        return at_members(grids, points, seconds)
+    first = winds[0]
+    if len(winds) > 1 and isinstance(first, Sharing) and all(type(wind) is type(first) for wind in winds):
+        return first.at_members(winds, points, seconds)
     return np.concatenate([wind.at(points, seconds) for wind in winds], axis=1)
-
-
-def _limited_at_each(winds: Sequence[LimitedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
-    """The same where each wind has its limits: fields and gusts are worked out together, then closed one by one."""
-    fields = at_each([wind.field for wind in winds], points, seconds)
-    counts = [3 * len(wind.gusts) for wind in winds]
-    gusts = [gust for wind in winds for gust in wind.gusts]
-    blown = at_each(gusts, points, seconds) if gusts else np.empty((len(points), 0))
-    parts = np.split(blown, np.cumsum(counts)[:-1], axis=1)
-    closed = [
-        wind.closing(fields[:, 3 * k : 3 * k + 3], parts[k] if counts[k] else None) for k, wind in enumerate(winds)
-    ]
-    return np.concatenate(closed, axis=1)

@@ -11,8 +11,8 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.cores import available_cores, spread
 from gcs_windplan.errors import WindError
-from gcs_windplan.kernels.interpolation import Columns, Law, interpolate_columns
-from gcs_windplan.wind.chart import to_grid
+from gcs_windplan.geo.inverse import to_grid_north
+from gcs_windplan.kernels.interpolation import POWER, Columns, Law, interpolate_columns
 from gcs_windplan.wind.field import STEADY, Ground
 from gcs_windplan.wind.placement import Placement, advice, may_extend
 
@@ -24,8 +24,8 @@ _MANY = 50_000  # points that are worth more than one core
 class GriddedWind:
     """Wind at the nodes of a grid, at times and levels; linear between them.
 
-    `columns` holds what `kernels.interpolation` says, its times in seconds since 1970, UTC; `zero` is the departure
-    among them, from which `at` counts. `law` leads the wind below the lowest level down to the ground. Above the
+    `columns` holds what `kernels.interpolation` says, its times in seconds since 1970, UTC; `departure` is
+    the one among them from which `at` counts. `law` leads the wind below the lowest level down to the ground. Above the
     highest level (or where `law` carries it to) the wind is not known: NaN.
 
     Everything else outside raises `WindError`: outside of the area unless `extend` (then the nearest edge's wind is
@@ -37,7 +37,7 @@ class GriddedWind:
     placement: Placement
     columns: Columns
     law: Law
-    zero: float
+    departure: float
     window: tuple[float, float] = (-math.inf, math.inf)
     ground: Ground | None = None
     extend: bool = False
@@ -60,25 +60,57 @@ class GriddedWind:
     @property
     def times(self) -> FloatArray:
         """Its times [s since departure] where it has more than one."""
-        return self.columns.times - self.zero if len(self.columns.times) > 1 else STEADY
+        return self.columns.times - self.departure if len(self.columns.times) > 1 else STEADY
 
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3), `seconds` (one, or (n,)) after departure; its upward part is 0.
 
         NaN where the height is above what is known. Raises `WindError` outside of the area or time.
         """
+        wind, convergence = self._true_wind(points, seconds)
+        return to_grid_north(wind, convergence)
+
+    def true_wind(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
+        """The same as `at`, but towards true east and north."""
+        return self._true_wind(points, seconds)[0]
+
+    def at_all_heights(self, values: FloatArray) -> GriddedWind:
+        """A field of two other values (times, rows, columns, 2) on the same grid, the same at all heights above ground.
+
+        It is not known what lies below the ground: there they are 0.
+        """
+        columns = self.columns._replace(
+            winds=values[:, :, :, np.newaxis, :], above=np.array([10.0]), heights=np.empty((*values.shape[:3], 0))
+        )
+        return replace(self, columns=columns, law=Law(POWER, 0.0, math.inf))
+
+    def _true_wind(self, points: FloatArray, seconds: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The wind (n, 3) towards true east and north, and the convergence (n,)."""
         when = self._when(seconds, len(points))
         places = self.placed(points)
         z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
         ground = ground_under(self.ground, points)
-        return to_grid(self.interpolated(places, z, ground, when), places[:, 2])
+        return self.interpolated(places, z, ground, when), places[:, 2]
+
+    @classmethod
+    def at_members(cls, members: Sequence[GriddedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+        """The winds (n, 3 m) of members as their `at`, one after the other; places and ground are looked up once."""
+        one = members[0]
+        if not all(member.shares_with(one) for member in members):
+            return np.concatenate([member.at(points, seconds) for member in members], axis=1)
+        when = one._when(seconds, len(points))
+        places = one.placed(points)
+        z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
+        ground = ground_under(one.ground, points)
+        turned = [to_grid_north(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
+        return np.concatenate(turned, axis=1)
 
     def shares_with(self, other: GriddedWind) -> bool:
         """Whether places, ground and clock are the other's: two members of one ensemble."""
         return (
             self.placement is other.placement
             and self.ground == other.ground
-            and self.zero == other.zero
+            and self.departure == other.departure
             and self.window == other.window
             and self.extend == other.extend
         )
@@ -102,16 +134,17 @@ class GriddedWind:
 
     def _when(self, seconds: float | FloatArray, count: int) -> FloatArray:
         """The time of each point [s since 1970]. Raises `WindError` outside of the usable times."""
-        when = np.broadcast_to(np.asarray(seconds, dtype=np.float64) + self.zero, count)
+        when = np.broadcast_to(np.asarray(seconds, dtype=np.float64) + self.departure, count)
         first, last = self.window
         if count and not (when.min() >= first and when.max() <= last):
             early = first - float(when.min())
             late = float(when.max()) - last
             gap, side = (early, "before its first") if early > late else (late, "after its last")
-            asked = (float(when.min()) if early > late else float(when.max())) - self.zero
+            asked = (float(when.min()) if early > late else float(when.max())) - self.departure
             raise WindError(
                 f"the wind is asked for {asked / 3600:.2f} h after departure, {gap / 3600:.2f} h {side} usable time"
-                f" ({self.name}): choose another departure, or a file that reaches further"
+                f" ({self.name}): choose another departure, or a file that reaches further",
+                reason="time",
             )
         return np.ascontiguousarray(when)
 
@@ -123,19 +156,9 @@ class GriddedWind:
         latitude, longitude = self.placement.frame.to_geographic(points[worst : worst + 1])
         raise WindError(
             f"the wind ends {missing[worst] / 1000:.1f} km short of {latitude[0]:.5f}, {longitude[0]:.5f}:"
-            f" {self.placement.covers()} ({self.name}); {advice(self.placement, float(missing[worst]))}"
+            f" {self.placement.covers()} ({self.name}); {advice(self.placement, float(missing[worst]))}",
+            reason="area",
         )
-
-
-def at_members(members: Sequence[GriddedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
-    """The winds (n, 3 m) of members that share places, ground and clock; as their `at` one after the other."""
-    one = members[0]
-    when = one._when(seconds, len(points))
-    places = one.placed(points)
-    z = np.ascontiguousarray(points[:, 2], dtype=np.float64)
-    ground = ground_under(one.ground, points)
-    turned = [to_grid(member.interpolated(places, z, ground, when), places[:, 2]) for member in members]
-    return np.concatenate(turned, axis=1)
 
 
 def mean_of(members: Sequence[GriddedWind]) -> GriddedWind:

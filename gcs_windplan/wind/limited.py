@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as worked_out
 from typing import Final
@@ -56,6 +57,20 @@ class LimitedWind:
         winds = self.field.at(points, seconds)
         gusts = at_each(self.gusts, points, seconds) if self.gusts else None
         return self.closing(winds, gusts)
+
+    @classmethod
+    def at_members(cls, members: Sequence[LimitedWind], points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+        """The winds (n, 3 m) of members: fields and gusts are worked out together, then closed one by one."""
+        fields = at_each([member.field for member in members], points, seconds)
+        counts = [3 * len(member.gusts) for member in members]
+        gusts = [gust for member in members for gust in member.gusts]
+        gust_winds = at_each(gusts, points, seconds) if gusts else np.empty((len(points), 0))
+        parts = np.split(gust_winds, np.cumsum(counts)[:-1], axis=1)
+        closed = [
+            member.closing(fields[:, 3 * k : 3 * k + 3], parts[k] if counts[k] else None)
+            for k, member in enumerate(members)
+        ]
+        return np.concatenate(closed, axis=1)
 
     def closing(self, winds: FloatArray, gusts: FloatArray | None) -> FloatArray:
         """The winds (n, 3), NaN where they or the gusts (n, 3 k) of k fields are too strong."""

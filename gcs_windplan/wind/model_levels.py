@@ -32,8 +32,8 @@ def heights_of_levels(
     """
     a, b = half_levels
     bottom = len(a) - 1
-    wanted = sorted(temperature, reverse=True)
-    missing = sorted(set(range(wanted[-1], bottom + 1)) - set(wanted)) if wanted else [bottom]
+    numbers = sorted(temperature, reverse=True)
+    missing = sorted(set(range(numbers[-1], bottom + 1)) - set(numbers)) if numbers else [bottom]
     if missing:
         raise WindError(
             f"the heights of its model levels need the temperature on all of them from the ground up: level"
@@ -41,7 +41,7 @@ def heights_of_levels(
         )
     heights: dict[int, FloatArray] = {}
     below = terrain * STANDARD_GRAVITY  # [m²/s²] geopotential of the half level under the level
-    for level in wanted:
+    for level in numbers:
         lower = a[level] + b[level] * pressure
         upper = np.maximum(a[level - 1] + b[level - 1] * pressure, _TOP)
         vapour = humidity.get(level, np.zeros_like(pressure))

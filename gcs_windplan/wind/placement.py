@@ -15,9 +15,10 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray, IntArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.geo.fit import PolynomialFit
 from gcs_windplan.geo.frame import LocalFrame
-from gcs_windplan.wind.chart import Chart, monomials
-from gcs_windplan.wind.sheets import Grid
+from gcs_windplan.geo.inverse import InverseProjection
+from gcs_windplan.wind.field_index import Grid
 
 #: west, south, east, north in the local frame [m]
 Box: TypeAlias = tuple[float, float, float, float]
@@ -27,9 +28,10 @@ EXTENDED = 50_000.0  # [m] how far beyond the grid's edge the edge's wind is tak
 POINT_REACH = 15_000.0  # [m] how far from its place a forecast for one place is used: our choice, a model's cell or two
 _LATTICE = 17  # points a side of the area whose latitudes and longitudes have to be read
 _WHOLE = 300_000.0  # [m] about the origin that is kept of a projected grid where no area is told
+_FARTHEST = 500_000.0  # [m] from the area that a projected grid is laid out in its local frame
 _FEWEST = 6  # rows and columns kept of a projected grid, so that the polynomial has enough to hold on to
 _LARGEST_ERROR = 1e-3  # of a cell
-_DEGREES = {5: (21, 60), 3: (10, 20), 1: (3, 0)}  # of the polynomial: its terms, and how many nodes it wants
+_DEGREES = {5: 60, 3: 20, 1: 0}  # of the polynomial, and the fewest nodes that it takes
 
 
 class Placement(Protocol):
@@ -68,10 +70,10 @@ class LatLonPlacement:
     frame: LocalFrame
     rows: FloatArray
     columns: FloatArray
-    _chart: Chart = field(init=False, repr=False, compare=False)
+    _inverse: InverseProjection = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_chart", Chart(self.frame))
+        object.__setattr__(self, "_inverse", InverseProjection(self.frame))
 
     @property
     def spacing(self) -> float:
@@ -83,13 +85,15 @@ class LatLonPlacement:
 
     def at(self, points: FloatArray) -> FloatArray:
         """Latitude, longitude [deg] and convergence [rad] of local points (n, 2 or more), shape (n, 3)."""
-        return self._chart.at(points)
+        return self._inverse.at(points)
 
     def misses(self, places: FloatArray) -> FloatArray:
         """How far places lie outside of the grid [m], shape (n,)."""
-        south_north = _beyond(places[:, 0], self.rows, POINT_REACH / METRES_PER_DEGREE)
+        south_north = _outside_by(places[:, 0], self.rows, POINT_REACH / METRES_PER_DEGREE)
         narrow = np.cos(np.radians(places[:, 0]))
-        west_east = _beyond(places[:, 1], self.columns, POINT_REACH / METRES_PER_DEGREE / narrow.clip(0.01)) * narrow
+        west_east = (
+            _outside_by(places[:, 1], self.columns, POINT_REACH / METRES_PER_DEGREE / narrow.clip(0.01)) * narrow
+        )
         distance: FloatArray = np.hypot(south_north, west_east) * METRES_PER_DEGREE
         return distance
 
@@ -113,25 +117,21 @@ class MappedPlacement:
     frame: LocalFrame
     nodes: FloatArray
     name: str
-    _chart: Chart = field(init=False, repr=False, compare=False)
-    _middle: FloatArray = field(init=False, repr=False, compare=False)
-    _reach: float = field(init=False, repr=False, compare=False)
-    _coefficients: FloatArray = field(init=False, repr=False, compare=False)
+    _inverse: InverseProjection = field(init=False, repr=False, compare=False)
+    _fit: PolynomialFit = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         places = self.nodes.reshape(-1, 2)
         middle = (places.min(axis=0) + places.max(axis=0)) / 2
         reach = float(np.abs(places - middle).max()) or 1.0
         numbers = np.indices(self.nodes.shape[:2]).reshape(2, -1).T.astype(np.float64)
-        degree = next(degree for degree, (_, few) in _DEGREES.items() if len(places) >= few)
-        powers = monomials((places - middle) / reach, degree)
-        fitted, *_ = np.linalg.lstsq(powers, numbers, rcond=None)
-        error = float(np.abs(powers @ fitted - numbers).max())
+        degree = next(degree for degree, fewest in _DEGREES.items() if len(places) >= fewest)
+        fit = PolynomialFit.least_squares(middle, np.full(2, reach), degree, places, numbers)
+        error = float(np.abs(fit.residual(places, numbers)).max())
         if not error < _LARGEST_ERROR:
             raise WindError(f"its grid ({self.name}) is too uneven: a fit is off by {error:.2g} cells; regrid it")
-        for name, value in (("_chart", Chart(self.frame)), ("_middle", middle), ("_reach", reach)):
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_coefficients", fitted)
+        object.__setattr__(self, "_inverse", InverseProjection(self.frame))
+        object.__setattr__(self, "_fit", fit)
 
     @property
     def rows(self) -> FloatArray:
@@ -151,14 +151,13 @@ class MappedPlacement:
 
     def at(self, points: FloatArray) -> FloatArray:
         """Row and column (numbers) and convergence [rad] of local points (n, 2 or more), shape (n, 3)."""
-        result = self._chart.at(points)
-        degree = next(degree for degree, (terms, _) in _DEGREES.items() if terms == len(self._coefficients))
-        result[:, :2] = monomials((points[:, :2] - self._middle) / self._reach, degree) @ self._coefficients
+        result = self._inverse.at(points)
+        result[:, :2] = self._fit.at(points)
         return result
 
     def misses(self, places: FloatArray) -> FloatArray:
         """How far places lie outside of the grid [m], shape (n,)."""
-        cells: FloatArray = np.hypot(_beyond(places[:, 0], self.rows), _beyond(places[:, 1], self.columns))
+        cells: FloatArray = np.hypot(_outside_by(places[:, 0], self.rows), _outside_by(places[:, 1], self.columns))
         return cells * self.spacing
 
     def covers(self) -> str:
@@ -171,7 +170,7 @@ class MappedPlacement:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class Subset:
     """The part of a grid that is wanted: rows and columns by number, ascending in the placement."""
 
     rows: IntArray
@@ -179,21 +178,22 @@ class Part:
     placement: Placement
 
 
-def part_of(grid: Grid, frame: LocalFrame, area: Box | None, extend: bool = False, anywhere: bool = False) -> Part:
+def subset_of(grid: Grid, frame: LocalFrame, area: Box | None, extend: bool = False) -> Subset:
     """The rows and columns that the area needs and a cell more, everything near where no area is told.
 
     Raises `WindError` if the grid lies wholly outside of the area, with `extend` if it does so by more than 50 km and a
-    spacing, and never with `anywhere`.
+    spacing.
     """
-    part = _regular_part(grid, frame, area) if grid.regular else _mapped_part(grid, frame, area)
-    if area is not None and not anywhere:
-        gap = float(part.placement.misses(part.placement.at(_lattice_of(area))).min())
-        if gap > (may_extend(part.placement) if extend else 1.0):
-            whole = part_of(grid, frame, None).placement.covers()
+    subset = _regular_subset(grid, frame, area) if grid.regular else _mapped_subset(grid, frame, area)
+    if area is not None:
+        gap = float(subset.placement.misses(subset.placement.at(_points_of(area))).min())
+        if gap > (may_extend(subset.placement) if extend else 1.0):
+            whole = subset_of(grid, frame, None).placement.covers()
             raise WindError(
-                f"the wind ends {gap / 1000:.0f} km short of the area: {whole}; {advice(part.placement, gap)}"
+                f"the wind ends {gap / 1000:.0f} km short of the area: {whole}; {advice(subset.placement, gap)}",
+                reason="area",
             )
-    return part
+    return subset
 
 
 def may_extend(placement: Placement) -> float:
@@ -208,43 +208,49 @@ def advice(placement: Placement, gap: float) -> str:
     return "take another file, or say `extend: nearest` to take the wind at its edge"
 
 
-def _regular_part(grid: Grid, frame: LocalFrame, area: Box | None) -> Part:
+def _regular_subset(grid: Grid, frame: LocalFrame, area: Box | None) -> Subset:
     rows = np.argsort(grid.latitudes)
     columns = _west_to_east(grid.longitudes, frame)
     latitudes, longitudes = grid.latitudes[rows], continuous(grid.longitudes[columns], frame)
     if area is not None:
-        latitude, longitude = frame.to_geographic(_lattice_of(area))
+        latitude, longitude = frame.to_geographic(_points_of(area))
         longitude = continuous(longitude, frame)
-        rows = rows[_about(latitudes, float(latitude.min()), float(latitude.max()))]
-        columns = columns[_about(longitudes, float(longitude.min()), float(longitude.max()))]
+        rows = rows[_enclosing(latitudes, float(latitude.min()), float(latitude.max()))]
+        columns = columns[_enclosing(longitudes, float(longitude.min()), float(longitude.max()))]
     latitudes, longitudes = grid.latitudes[rows], continuous(grid.longitudes[columns], frame)
     for what, axis in (("latitudes", latitudes), ("longitudes", longitudes)):
         if not (np.diff(axis) > 0).all():
             raise WindError(f"its {what} do not go one way, each value once ({grid.name})")
-    return Part(
+    return Subset(
         rows.astype(np.int64),
         columns.astype(np.int64),
         LatLonPlacement(frame, np.ascontiguousarray(latitudes), np.ascontiguousarray(longitudes)),
     )
 
 
-def _mapped_part(grid: Grid, frame: LocalFrame, area: Box | None) -> Part:
+def _mapped_subset(grid: Grid, frame: LocalFrame, area: Box | None) -> Subset:
     nodes = frame.to_local(grid.latitudes.ravel(), grid.longitudes.ravel()).reshape(*grid.shape, 2)
-    nodes[_behind(grid, frame)] = np.inf
+    nodes[_on_far_side(grid, frame)] = np.inf
     box = (-_WHOLE, -_WHOLE, _WHOLE, _WHOLE) if area is None else area
     beyond = np.maximum(np.abs(nodes - _middle_of(box)) - _half_of(box), 0.0).max(axis=2)
+    gap = float(beyond.min())
+    if not gap < _FARTHEST:
+        away = f"{gap / 1000:.0f} km short of the area" if math.isfinite(gap) else "on the other side of the globe"
+        raise WindError(
+            f"the wind ends {away}: it covers a part of its own grid ({grid.name}); take another file", "area"
+        )
     nearest = np.unravel_index(int(np.argmin(beyond)), grid.shape)
     cell = _cell_at(nodes, nearest)
-    close = beyond <= max(1.5 * cell, float(beyond.min()))
-    rows = _widened(np.flatnonzero(close.any(axis=1)), grid.shape[0])
-    columns = _widened(np.flatnonzero(close.any(axis=0)), grid.shape[1])
+    close = beyond <= max(1.5 * cell, gap)
+    rows = _at_least_six(np.flatnonzero(close.any(axis=1)), grid.shape[0])
+    columns = _at_least_six(np.flatnonzero(close.any(axis=0)), grid.shape[1])
     kept = nodes[np.ix_(rows, columns)]
     if not np.isfinite(kept).all():
         raise WindError(f"its grid ({grid.name}) is too far away from the area to be laid out")
-    return Part(rows, columns, MappedPlacement(frame, np.ascontiguousarray(kept), grid.name))
+    return Subset(rows, columns, MappedPlacement(frame, np.ascontiguousarray(kept), grid.name))
 
 
-def _behind(grid: Grid, frame: LocalFrame) -> BoolArray:
+def _on_far_side(grid: Grid, frame: LocalFrame) -> BoolArray:
     """Which nodes lie on the other half of the globe, where the frame cannot place them."""
     latitudes, origin = np.radians(grid.latitudes), np.radians(frame.origin.latitude_deg)
     apart = np.cos(np.radians(grid.longitudes - frame.origin.longitude_deg))
@@ -252,13 +258,13 @@ def _behind(grid: Grid, frame: LocalFrame) -> BoolArray:
     return behind
 
 
-def axes_directions(grid: Grid, part: Part) -> FloatArray:
-    """The angle from true east to the grid's x axis, anticlockwise [rad], at a part's nodes (rows, columns).
+def axes_directions(grid: Grid, rows: IntArray, columns: IntArray) -> FloatArray:
+    """The angle from true east to the grid's x axis, anticlockwise [rad], at some of its nodes (rows, columns).
 
     The x axis runs along the columns, against their order where the grid says so.
     """
-    latitudes = np.radians(grid.latitudes[np.ix_(part.rows, part.columns)])
-    longitudes = np.unwrap(np.radians(grid.longitudes[np.ix_(part.rows, part.columns)]), axis=1)
+    latitudes = np.radians(grid.latitudes[np.ix_(rows, columns)])
+    longitudes = np.unwrap(np.radians(grid.longitudes[np.ix_(rows, columns)]), axis=1)
     if min(latitudes.shape) < 2:
         raise WindError(f"its grid ({grid.name}) has too few nodes to tell where its axes point")
     east = np.cos(latitudes) * _slope(longitudes)
@@ -294,18 +300,18 @@ def _west_to_east(longitudes: FloatArray, frame: LocalFrame) -> IntArray:
     steps = np.abs((np.diff(longitudes) + 180.0) % 360.0 - 180.0)
     gaps = np.flatnonzero(np.diff(turned[order]) > 1.5 * steps.max(initial=0.0) + 1e-9)
     parts = np.split(order, gaps + 1)
-    nearest: IntArray = min(parts, key=lambda part: np.abs(turned[part] - frame.origin.longitude_deg).min())
+    nearest: IntArray = min(parts, key=lambda subset: np.abs(turned[subset] - frame.origin.longitude_deg).min())
     return nearest
 
 
-def _about(axis: FloatArray, low: float, high: float) -> slice:
+def _enclosing(axis: FloatArray, low: float, high: float) -> slice:
     """The nodes of an ascending axis that enclose an interval, and one more on either side."""
     first = min(max(int(np.searchsorted(axis, low, side="right")) - 2, 0), len(axis) - 1)
     last = min(max(int(np.searchsorted(axis, high, side="left")) + 2, first + 1), len(axis))
     return slice(first, last)
 
 
-def _widened(numbers: IntArray, size: int) -> IntArray:
+def _at_least_six(numbers: IntArray, size: int) -> IntArray:
     """All numbers from the first to the last, and more on both sides if they are few."""
     first, last = int(numbers[0]), int(numbers[-1]) + 1
     more = max(0, _FEWEST - (last - first) + 1) // 2
@@ -320,13 +326,13 @@ def _cell_at(nodes: FloatArray, node: tuple[np.intp, ...]) -> float:
     return float(np.max(ways[np.isfinite(ways)], initial=0.0))
 
 
-def _beyond(values: FloatArray, axis: FloatArray, reach: FloatArray | float = 0.0) -> FloatArray:
+def _outside_by(values: FloatArray, axis: FloatArray, reach: FloatArray | float = 0.0) -> FloatArray:
     """How far values lie outside of an axis; one of a single node reaches so far on both sides."""
     outside: FloatArray = values - np.clip(values, axis[0], axis[-1])
     return np.maximum(np.abs(outside) - (reach if len(axis) == 1 else 0.0), 0.0)
 
 
-def _lattice_of(box: Box) -> FloatArray:
+def _points_of(box: Box) -> FloatArray:
     """Points of an area (n, 2), its corners among them."""
     x, y = np.meshgrid(np.linspace(box[0], box[2], _LATTICE), np.linspace(box[1], box[3], _LATTICE))
     return np.stack([x.ravel(), y.ravel()], axis=-1)

@@ -139,8 +139,8 @@ def test_the_triangle_of_a_real_leg(shared_data):
 def test_a_mission_in_a_real_forecast(shared_data, tmp_path):
     """Davos in ERA5 of 2020-02-22: the wind is the one that the forecast's own report tells."""
     from gcs_windplan.cli.wind_options import read_place
-    from gcs_windplan.wind.report.inventory import open_files
-    from gcs_windplan.wind.report.sounding import spot_at
+    from gcs_windplan.wind.inspect.sounding import take_sounding
+    from gcs_windplan.wind.reading import open_indexes
 
     file = tmp_path / "davos.waypoints"
     rows = [
@@ -156,7 +156,9 @@ def test_a_mission_in_a_real_forecast(shared_data, tmp_path):
     middle = np.argmin(np.abs(review.profile.distance - review.legs[0].distance / 2))
     place = f"{review.profile.latitude_deg[middle]},{review.profile.longitude_deg[middle]},2260"
     moment = review.departure.timestamp() + review.profile.seconds[middle]
-    with open_files([era5]) as opened:
-        spot = spot_at([one.catalogue for one in opened], *read_place(place), moment, None)
+    point, height = read_place(place)
+    with open_indexes([era5]) as indexes:
+        found = take_sounding(indexes, point, moment, None, height).at_height
+    assert found is not None
     here = (review.profile.wind_east[middle], review.profile.wind_north[middle])
-    assert here == pytest.approx(tuple(spot.winds[0]), abs=0.05)
+    assert here == pytest.approx(tuple(found.winds[0]), abs=0.05)

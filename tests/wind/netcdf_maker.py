@@ -1,4 +1,4 @@
-"""Writes small NetCDF files of any shape, and reads all sheets of one."""
+"""Writes small NetCDF files of any shape, and reads all fields of one."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import netCDF4
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.wind.field_index import Field2D, FieldIndex
 from gcs_windplan.wind.files.netcdf import open_netcdf
-from gcs_windplan.wind.sheets import Catalogue, Sheet
 
 #: Dimensions separated by blanks, values, attributes.
 Content = tuple[str, Any, Mapping[str, Any]]
@@ -47,12 +47,12 @@ def wind(dimensions: str, *shape: int, value: Any = 10.0, **attributes: Any) -> 
     return dimensions, np.full(shape, value), {**MS, **attributes}
 
 
-def everything(path: Path) -> tuple[Catalogue, list[tuple[Sheet, FloatArray]]]:
-    """The catalogue of a file, and all its sheets with their whole values."""
-    with open_netcdf(path) as catalogue:
-        return catalogue, [(sheet, whole(sheet)) for sheet in catalogue.sheets]
+def everything(path: Path) -> tuple[FieldIndex, list[tuple[Field2D, FloatArray]]]:
+    """The index of a file, and all its fields with their whole values."""
+    with open_netcdf(path) as index:
+        return index, [(field2d, whole(field2d)) for field2d in index.fields]
 
 
-def whole(sheet: Sheet) -> FloatArray:
-    """All values of a sheet."""
-    return sheet.read(np.arange(sheet.grid.shape[0]), np.arange(sheet.grid.shape[1]))
+def whole(field2d: Field2D) -> FloatArray:
+    """All values of a field."""
+    return field2d.read(np.arange(field2d.grid.shape[0]), np.arange(field2d.grid.shape[1]))

@@ -111,10 +111,10 @@ def _of_netcdf(path: Path) -> Iterator[Value]:
 
 def _of_ndfd(path: Path, file: Any) -> Iterator[Value]:
     """Its places by the reader's grid, which has tests of its own."""
-    from gcs_windplan.wind.files.anyfile import open_catalogue
+    from gcs_windplan.wind.files.anyfile import open_index
 
-    with open_catalogue(path) as catalogue:
-        grid = catalogue.sheets[0].grid
+    with open_index(path) as index:
+        grid = index.fields[0].grid
     time = _times(file["time"])[0]
     for quantity, name in zip(("speed", "direction"), _NDFD, strict=True):
         plane = file[name][0, 0]

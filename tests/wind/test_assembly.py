@@ -1,4 +1,4 @@
-"""What is made of sheets: turned to true north, put at their heights, the right run, members and times."""
+"""What is made of fields: turned to true north, put at their heights, the right run, members and times."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
-from gcs_windplan.wind import Forecast, Wanted, read_forecast
+from gcs_windplan.wind import Forecast, ForecastQuery, read_forecast
 from gcs_windplan.wind.model_levels import heights_of_levels
 from tests.wind.grib_files import box, message
 from tests.wind.netcdf_maker import write_netcdf
@@ -40,7 +40,7 @@ def _level(u: float, v: float = 0.0, height: float | None = None, **keys) -> lis
 
 
 def _read(path: Path, ground=_flat, departure: datetime | None = NOON, **options) -> Forecast:
-    return read_forecast([path], Wanted(FRAME, ground, departure, **options))
+    return read_forecast([path], ForecastQuery(FRAME, ground, departure, **options))
 
 
 def _east(forecast: Forecast, *heights: float, seconds: float = 0.0, member: int = 0):
@@ -123,7 +123,7 @@ def test_only_the_times_that_the_flight_needs_are_read(tmp_path: Path) -> None:
 def test_two_files_belong_together(tmp_path: Path) -> None:
     first = _file(tmp_path / "a.grib", *_level(10, height=1500))
     second = _file(tmp_path / "b.grib", *_level(20, height=1500, endStep=6))
-    forecast = read_forecast([first, second], Wanted(FRAME, _flat, NOON))
+    forecast = read_forecast([first, second], ForecastQuery(FRAME, _flat, NOON))
     assert "a.grib and 1 more" in forecast.name
     np.testing.assert_allclose(_east(forecast, 1500.0, seconds=3 * 3600.0), [15], atol=ONE_CM_PER_SECOND)
 
@@ -187,18 +187,18 @@ def _lambert(path: Path, along_grid: bool = True) -> Path:
 def test_winds_along_a_lambert_grid_are_turned_to_true_north(tmp_path: Path) -> None:
     """At 25 E of an axis at 10 E the grid's x axis points n · 15 degrees south of east, n = sin(50): Snyder 1987."""
     frame = LocalFrame(GeoPoint(52.0, 25.0))
-    wanted = Wanted(frame, _flat, None, area=(-50e3, -50e3, 50e3, 50e3))
-    found = read_forecast([_lambert(tmp_path / "a.nc")], wanted).mean.at(np.array([[0.0, 0.0, 50.0]]))[0]
+    query = ForecastQuery(frame, _flat, None, area=(-50e3, -50e3, 50e3, 50e3))
+    found = read_forecast([_lambert(tmp_path / "a.nc")], query).mean.at(np.array([[0.0, 0.0, 50.0]]))[0]
     angle = math.sin(math.radians(50.0)) * math.radians(15.0)
     np.testing.assert_allclose(found[:2], [10 * math.cos(angle), -10 * math.sin(angle)], atol=ONE_CM_PER_SECOND)
-    true = read_forecast([_lambert(tmp_path / "b.nc", along_grid=False)], wanted).mean
+    true = read_forecast([_lambert(tmp_path / "b.nc", along_grid=False)], query).mean
     np.testing.assert_allclose(true.at(np.array([[0.0, 0.0, 50.0]]))[0], [10, 0, 0], atol=ONE_CM_PER_SECOND)
 
 
 def test_over_the_whole_area_of_a_lambert_grid_the_turn_follows_the_meridians(tmp_path: Path) -> None:
     frame = LocalFrame(GeoPoint(52.0, 25.0))
-    wanted = Wanted(frame, _flat, None, area=(-80e3, -80e3, 80e3, 80e3))
-    wind = read_forecast([_lambert(tmp_path / "a.nc")], wanted).mean
+    query = ForecastQuery(frame, _flat, None, area=(-80e3, -80e3, 80e3, 80e3))
+    wind = read_forecast([_lambert(tmp_path / "a.nc")], query).mean
     points = np.array([[x, y, 50.0] for x in (-80e3, 0.0, 80e3) for y in (-80e3, 0.0, 80e3)])
     _, longitudes = frame.to_geographic(points)
     angle = math.sin(math.radians(50.0)) * np.radians(longitudes - 10.0)
@@ -210,7 +210,7 @@ def test_over_the_whole_area_of_a_lambert_grid_the_turn_follows_the_meridians(tm
 def test_outside_of_a_lambert_grid_is_an_error(tmp_path: Path) -> None:
     frame = LocalFrame(GeoPoint(52.0, 35.0))
     with pytest.raises(WindError, match=r"ends \d+ km short of the area: it covers, within latitudes"):
-        read_forecast([_lambert(tmp_path / "a.nc")], Wanted(frame, _flat, None, area=(-5e3, -5e3, 5e3, 5e3)))
+        read_forecast([_lambert(tmp_path / "a.nc")], ForecastQuery(frame, _flat, None, area=(-5e3, -5e3, 5e3, 5e3)))
 
 
 def test_model_levels_in_an_isothermal_atmosphere_lie_where_the_hypsometric_equation_has_them() -> None:
@@ -257,7 +257,7 @@ def test_gusts_are_read_beside_the_wind() -> None:
         pytest.skip(f"{path.name} is not on this machine: the shared test data are missing")
     frame = LocalFrame(GeoPoint(40.764416, -111.981255))
     departure = datetime(2025, 9, 11, 18, tzinfo=UTC)  # 12:00 in the file's local time
-    forecast = read_forecast([path], Wanted(frame, lambda p: np.full(len(p), 1288.0), departure))
+    forecast = read_forecast([path], ForecastQuery(frame, lambda p: np.full(len(p), 1288.0), departure))
     gust = np.hypot(*forecast.gusts[0].at(np.array([[0.0, 0.0, 1400.0]]))[0, :2])
     assert gust == pytest.approx(23.5 * 0.44704, abs=ONE_CM_PER_SECOND)
     low = forecast.mean.at(np.array([[0.0, 0.0, 1298.0]]))[0]
@@ -269,7 +269,7 @@ def test_the_real_lambert_forecast_equals_the_file(shared_data: Path) -> None:
     """NDFD over the Big Butte: speed and direction at nodes, turned to true north by nobody but its authors."""
     path = shared_data / "wind" / "ndfd_20170603T1800.nc"
     frame = LocalFrame(GeoPoint(43.4, -113.02))
-    wind = read_forecast([path], Wanted(frame, _flat, None, area=(-20e3, -20e3, 20e3, 20e3))).mean
+    wind = read_forecast([path], ForecastQuery(frame, _flat, None, area=(-20e3, -20e3, 20e3, 20e3))).mean
     with netCDF4.Dataset(path) as file:
         speed = file["Wind_speed_height_above_ground"][0, 0]
         direction = file["Wind_direction_from_which_blowing_height_above_ground"][0, 0]
@@ -301,13 +301,13 @@ def _lambert_inverse(x, y):
 def test_a_forecast_with_u_and_v_on_different_levels_uses_the_common_ones(shared_data: Path) -> None:
     path = shared_data / "wind" / "ecmwf_uv_on_different_levels.grib"
     with pytest.raises(WindError, match="no geopotential"):
-        read_forecast([path], Wanted(FRAME, _flat, datetime(2017, 10, 18, 20, tzinfo=UTC)))
+        read_forecast([path], ForecastQuery(FRAME, _flat, datetime(2017, 10, 18, 20, tzinfo=UTC)))
 
 
 def test_an_ensemble_without_v_is_refused(shared_data: Path) -> None:
     with pytest.raises(WindError, match=r"it has u \(u\) but no v"):
         read_forecast(
-            [shared_data / "wind" / "ecmwf_ens_ztu_multi_dim.grib"], Wanted(FRAME, _flat, NOON, members="all")
+            [shared_data / "wind" / "ecmwf_ens_ztu_multi_dim.grib"], ForecastQuery(FRAME, _flat, NOON, members="all")
         )
 
 

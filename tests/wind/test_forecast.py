@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import math
 import re
 from collections.abc import Callable
@@ -16,7 +17,7 @@ import pytest
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame, rotate
-from gcs_windplan.wind import GriddedWind, Ground, Wanted, read_forecast
+from gcs_windplan.wind import ForecastQuery, GriddedWind, Ground, read_forecast, reading
 from tests.wind.trap_file import FROM_WEST, write_trap
 
 ONE_CM_PER_SECOND = 0.01
@@ -39,7 +40,7 @@ def read(
     path: Path, frame: LocalFrame, ground: Ground | None = None, departure: datetime | None = None, **options: Any
 ) -> GriddedWind:
     """The wind of one file, the mean where there are members."""
-    return read_forecast([path], Wanted(frame, ground, departure, **options)).mean
+    return read_forecast([path], ForecastQuery(frame, ground, departure, **options)).mean
 
 
 def _flat(points: FloatArray) -> FloatArray:
@@ -331,3 +332,31 @@ def test_a_gap_between_its_times_is_said(trap: Trap) -> None:
     wind = read(trap(hours=[0.0, 1.0, 2.0, 13.0]), GREENWICH, _flat, NOON + timedelta(hours=0.5))
     assert "with a gap of 11 h" in wind.name
     assert "gap" not in read(trap(hours=[0.0, 3.0, 6.0]), GREENWICH, _flat, NOON).name
+
+
+def test_the_example_of_the_docstring(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(Path(__file__).parents[2])
+    done = doctest.testmod(reading)
+    assert (done.failed, done.attempted > 5) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("frame", "departure", "reason"),
+    [(GREENWICH, NOON - timedelta(hours=2), "time"), (DAVOS, NOON, "area"), (GREENWICH, NOON, None)],
+)
+def test_an_error_tells_its_reason_and_its_file(
+    trap: Trap, frame: LocalFrame, departure: datetime, reason: str | None
+) -> None:
+    """Too early, too far away, or without a wind at all."""
+    path = trap(hours=(0.0, 6.0), without=() if reason else ("v",))
+    with pytest.raises(WindError) as error:
+        read_forecast([path], ForecastQuery(frame, departure=departure, area=(0.0, 0.0, 1000.0, 1000.0)))
+    assert error.value.reason == reason
+    assert [problem.file for problem in error.value.problems] == [path]
+
+
+def test_an_error_names_the_members_to_choose_from() -> None:
+    front = Path(__file__).parents[2] / "missions" / "wind" / "front_synthetic.nc"
+    with pytest.raises(WindError) as error:
+        read_forecast([front], ForecastQuery(JACKSBORO, departure=datetime(2026, 5, 1, 15, tzinfo=UTC)))
+    assert (error.value.reason, error.value.members) == ("members", tuple(range(10)))

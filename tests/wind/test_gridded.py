@@ -45,7 +45,7 @@ def _wind(columns: Columns | None = None, **changes: object) -> GriddedWind:
         placement=LatLonPlacement(FRAME, columns.rows, columns.columns),
         columns=columns,
         law=Law(LOG, 0.0, 0.0),
-        zero=EPOCH,
+        departure=EPOCH,
         window=(float(columns.times[0]), float(columns.times[-1])),
     )
     return replace(wind, **changes)  # type: ignore[arg-type]
@@ -73,7 +73,7 @@ def test_each_point_may_have_its_own_time() -> None:
 
 
 def test_times_count_from_the_departure() -> None:
-    later = replace(_wind(), zero=EPOCH + 1800.0)
+    later = replace(_wind(), departure=EPOCH + 1800.0)
     np.testing.assert_allclose(later.times, [-1800, 5400])
     np.testing.assert_allclose(_at(later, 0, 0, 150, 1800.0), [10.5, 0, 0], atol=ONE_CM_PER_SECOND)
 
@@ -84,6 +84,16 @@ def test_true_components_are_turned_into_the_local_grid() -> None:
     convergence = FRAME.convergence(np.array([[50_000.0, 0.0]]))
     np.testing.assert_allclose(wind[np.newaxis], rotate(np.array([[10.0, 0.0, 0.0]]), -convergence), atol=1e-6)
     assert wind[1] == pytest.approx(0.168, abs=ONE_CM_PER_SECOND)
+    true = _wind().true_wind(np.array([[50_000.0, 0.0, 100.0]]))
+    np.testing.assert_allclose(true, [[10.0, 0.0, 0.0]], atol=1e-9)
+
+
+def test_other_values_on_the_same_grid_are_the_same_at_all_heights_and_nothing_below_the_ground() -> None:
+    values = np.full((2, 3, 3, 2), [3.0, 4.0]) * np.array([1.0, 2.0])[:, np.newaxis, np.newaxis, np.newaxis]
+    field = _wind(ground=lambda points: np.full(len(points), 50.0)).at_all_heights(values)
+    points = np.array([[0.0, 0.0, height] for height in (51.0, 400.0, 9000.0, 49.0)])
+    expected = [[4.5, 6.0, 0.0]] * 3 + [[0.0, 0.0, 0.0]]
+    np.testing.assert_allclose(field.true_wind(points, 3600.0), expected, atol=ONE_CM_PER_SECOND)
 
 
 def test_above_the_highest_level_it_is_not_known() -> None:

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.wind.placement import axes_directions, part_of
-from gcs_windplan.wind.sheets import Grid
+from gcs_windplan.wind.field_index import Grid
+from gcs_windplan.wind.placement import axes_directions, subset_of
 
 AREA = (-20e3, -20e3, 20e3, 20e3)
 one_thousandth_of_a_cell = 1e-3
@@ -25,48 +25,50 @@ def grid(latitudes, longitudes) -> Grid:
 WORLD = grid(np.arange(90, -91, -5), np.arange(0, 360, 5))
 
 
-def places_of(part, area=AREA):
+def places_of(subset, area=AREA):
     """Corners and middle of an area on the placement's axes, as shares of the part from 0 to 1."""
     points = np.array([[x, y] for x in (area[0], 0.0, area[2]) for y in (area[1], 0.0, area[3])])
-    return points, part.placement.at(points)
+    return points, subset.placement.at(points)
 
 
 @pytest.mark.parametrize("origin", [(51.0, 0.5), (51.0, 179.5), (51.0, -179.5), (-36.0, 149.0), (64.9, -140.0)])
 def test_of_a_world_from_0_to_360_a_few_nodes_around_the_area_are_kept(origin):
     frame = LocalFrame(GeoPoint(*origin))
-    part = part_of(WORLD, frame, AREA)
-    assert len(part.rows) <= 5
-    assert len(part.columns) <= 5
-    points, places = places_of(part)
+    subset = subset_of(WORLD, frame, AREA)
+    assert len(subset.rows) <= 5
+    assert len(subset.columns) <= 5
+    points, places = places_of(subset)
     latitudes, longitudes = frame.to_geographic(points)
     np.testing.assert_allclose(places[:, 0], latitudes, atol=1e-6)
     np.testing.assert_allclose((places[:, 1] - longitudes + 180) % 360 - 180, 0, atol=1e-6)
-    assert (places[:, 1] >= part.placement.columns[0]).all()
-    assert (places[:, 1] <= part.placement.columns[-1]).all()
-    named = WORLD.longitudes[part.columns]
-    np.testing.assert_allclose((named - part.placement.columns + 180) % 360 - 180, 0, atol=1e-9)
+    assert (places[:, 1] >= subset.placement.columns[0]).all()
+    assert (places[:, 1] <= subset.placement.columns[-1]).all()
+    named = WORLD.longitudes[subset.columns]
+    np.testing.assert_allclose((named - subset.placement.columns + 180) % 360 - 180, 0, atol=1e-9)
 
 
 def test_a_meridian_that_stands_at_both_ends_counts_once():
-    part = part_of(grid(np.arange(40, 60, 1.0), np.arange(-180, 180.5, 1.0)), LocalFrame(GeoPoint(50.0, 179.8)), AREA)
-    assert (np.diff(part.placement.columns) > 0.5).all()
+    subset = subset_of(
+        grid(np.arange(40, 60, 1.0), np.arange(-180, 180.5, 1.0)), LocalFrame(GeoPoint(50.0, 179.8)), AREA
+    )
+    assert (np.diff(subset.placement.columns) > 0.5).all()
 
 
 def test_an_area_outside_is_an_error_that_says_by_how_much_unless_it_is_extended():
     small, frame = grid(np.arange(40, 45, 0.5), np.arange(0, 5, 0.5)), LocalFrame(GeoPoint(46.0, 2.0))
     with pytest.raises(WindError, match=r"ends 14[67] km short of the area: it covers latitudes 40\.000 to 44\.500"):
-        part_of(small, frame, AREA)
+        subset_of(small, frame, AREA)
     with pytest.raises(WindError, match="take another file"):
-        part_of(small, frame, AREA, extend=True)
+        subset_of(small, frame, AREA, extend=True)
     near = LocalFrame(GeoPoint(44.9, 2.0))
     with pytest.raises(WindError, match="extend: nearest"):
-        part_of(small, near, AREA)
-    assert len(part_of(small, near, AREA, extend=True).rows)
+        subset_of(small, near, AREA)
+    assert len(subset_of(small, near, AREA, extend=True).rows)
 
 
 def test_latitudes_that_stand_twice_are_refused():
     with pytest.raises(WindError, match="each value once"):
-        part_of(grid([50.0, 50.0, 51.0], [0.0, 1.0]), LocalFrame(GeoPoint(50.5, 0.5)), None)
+        subset_of(grid([50.0, 50.0, 51.0], [0.0, 1.0]), LocalFrame(GeoPoint(50.5, 0.5)), None)
 
 
 def rotated_grid(angle: float, step: float = 5e3, nodes: int = 41) -> tuple[Grid, LocalFrame]:
@@ -83,20 +85,20 @@ def rotated_grid(angle: float, step: float = 5e3, nodes: int = 41) -> tuple[Grid
 @given(angle=st.floats(-80, 80), east=st.floats(-20e3, 20e3), north=st.floats(-20e3, 20e3))
 def test_on_any_lattice_places_lie_where_its_nodes_say(angle, east, north):
     lattice, frame = rotated_grid(angle)
-    part = part_of(lattice, frame, AREA)
-    row, column = part.placement.at(np.array([[east, north]]))[0, :2]
+    subset = subset_of(lattice, frame, AREA)
+    row, column = subset.placement.at(np.array([[east, north]]))[0, :2]
     turn = math.radians(angle)
     x, y = east * math.cos(turn) + north * math.sin(turn), north * math.cos(turn) - east * math.sin(turn)
-    assert row + part.rows[0] == pytest.approx(20 + y / 5e3, abs=one_thousandth_of_a_cell)
-    assert column + part.columns[0] == pytest.approx(20 + x / 5e3, abs=one_thousandth_of_a_cell)
+    assert row + subset.rows[0] == pytest.approx(20 + y / 5e3, abs=one_thousandth_of_a_cell)
+    assert column + subset.columns[0] == pytest.approx(20 + x / 5e3, abs=one_thousandth_of_a_cell)
 
 
 @pytest.mark.parametrize("angle", [-60.0, 0.0, 33.0, 80.0])
 def test_the_axes_of_a_lattice_point_where_it_was_turned_to(angle):
     lattice, frame = rotated_grid(angle)
-    part = part_of(lattice, frame, AREA)
-    directions = np.degrees(axes_directions(lattice, part))
-    places = part.placement.nodes.reshape(-1, 2)
+    subset = subset_of(lattice, frame, AREA)
+    directions = np.degrees(axes_directions(lattice, subset.rows, subset.columns))
+    places = subset.placement.nodes.reshape(-1, 2)
     expected = angle - np.degrees(frame.convergence(places)).reshape(directions.shape)
     np.testing.assert_allclose(
         directions, expected, atol=0.06
@@ -105,15 +107,15 @@ def test_the_axes_of_a_lattice_point_where_it_was_turned_to(angle):
 
 def test_how_far_a_place_lies_outside_is_told_in_metres():
     lattice, frame = rotated_grid(0.0)
-    part = part_of(lattice, frame, (-100e3, -100e3, 100e3, 100e3))
-    beyond = part.placement.at(np.array([[112e3, 0.0], [0.0, 0.0]]))
-    np.testing.assert_allclose(part.placement.misses(beyond), [12e3, 0], rtol=0.02)
+    subset = subset_of(lattice, frame, (-100e3, -100e3, 100e3, 100e3))
+    beyond = subset.placement.at(np.array([[112e3, 0.0], [0.0, 0.0]]))
+    np.testing.assert_allclose(subset.placement.misses(beyond), [12e3, 0], rtol=0.02)
 
 
 def test_a_lattice_of_few_nodes_is_placed_too():
     lattice, frame = rotated_grid(20.0, nodes=3, step=40e3)
-    part = part_of(lattice, frame, AREA)
-    np.testing.assert_allclose(part.placement.at(np.zeros((1, 2)))[0, :2], [1, 1], atol=one_thousandth_of_a_cell)
+    subset = subset_of(lattice, frame, AREA)
+    np.testing.assert_allclose(subset.placement.at(np.zeros((1, 2)))[0, :2], [1, 1], atol=one_thousandth_of_a_cell)
 
 
 def test_an_uneven_grid_is_refused():
@@ -121,7 +123,7 @@ def test_an_uneven_grid_is_refused():
     latitudes = lattice.latitudes.copy()
     latitudes[20, 20] += 0.02
     with pytest.raises(WindError, match="too uneven"):
-        part_of(Grid(latitudes, lattice.longitudes, "bent"), frame, AREA)
+        subset_of(Grid(latitudes, lattice.longitudes, "bent"), frame, AREA)
 
 
 @pytest.mark.parametrize("longitude", [0.0, 45.0, 89.0, 135.0, 180.0, -100.0])
@@ -132,13 +134,13 @@ def test_on_a_polar_grid_the_axes_turn_with_the_meridian_all_around(longitude):
     latitudes = 90 - 2 * np.degrees(np.arctan(np.hypot(x, y) / (2 * radius)))
     longitudes = np.degrees(np.arctan2(x, -y))
     polar, frame = Grid(latitudes, longitudes, "polar stereographic"), LocalFrame(GeoPoint(76.0, longitude))
-    part = part_of(polar, frame, AREA)
-    middle = len(part.rows) // 2, len(part.columns) // 2
-    here = longitudes[part.rows[middle[0]], part.columns[middle[1]]]
-    found = np.degrees(axes_directions(polar, part)[middle])
+    subset = subset_of(polar, frame, AREA)
+    middle = len(subset.rows) // 2, len(subset.columns) // 2
+    here = longitudes[subset.rows[middle[0]], subset.columns[middle[1]]]
+    found = np.degrees(axes_directions(polar, subset.rows, subset.columns)[middle])
     assert (found + here + 180) % 360 - 180 == pytest.approx(0.0, abs=0.1)
     back = Grid(latitudes[:, ::-1], longitudes[:, ::-1], "polar stereographic", backwards=True)
-    part = part_of(back, frame, AREA)
-    here = back.longitudes[part.rows[middle[0]], part.columns[middle[1]]]
-    found = np.degrees(axes_directions(back, part)[middle])
+    subset = subset_of(back, frame, AREA)
+    here = back.longitudes[subset.rows[middle[0]], subset.columns[middle[1]]]
+    found = np.degrees(axes_directions(back, subset.rows, subset.columns)[middle])
     assert (found + here + 180) % 360 - 180 == pytest.approx(0.0, abs=0.1)

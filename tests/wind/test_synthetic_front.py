@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.wind import Wanted, read_forecast
+from gcs_windplan.wind import ForecastQuery, read_forecast
 
 FOLDER = Path(__file__).resolve().parents[2] / "missions" / "wind"
 PATH = FOLDER / "front_synthetic.nc"
@@ -69,7 +69,7 @@ def test_it_covers_the_terrain_with_a_margin_and_is_small(file: netCDF4.Dataset)
 def test_the_reader_finds_members_run_and_gusts() -> None:
     middle = LocalFrame(GeoPoint(36.59, -84.25))
     departure = datetime(2026, 5, 1, 12, tzinfo=UTC)
-    forecast = read_forecast([PATH], Wanted(middle, departure=departure, members="all"))
+    forecast = read_forecast([PATH], ForecastQuery(middle, departure=departure, members="all"))
     assert forecast.members == tuple(range(10))
     assert forecast.runs == (datetime(2026, 5, 1, tzinfo=UTC).timestamp(),)
     assert len(forecast.gusts) == 10

@@ -56,7 +56,7 @@ def _forecast(document: MissionDocument, frame: LocalFrame, terrain: Terrain, ar
     model = document.model.wind
     assert model.forecast is not None
     profile = model.profile
-    wanted = air.Wanted(
+    query = air.ForecastQuery(
         frame=frame,
         ground=terrain.heights_at,
         departure=when.moment,
@@ -70,7 +70,7 @@ def _forecast(document: MissionDocument, frame: LocalFrame, terrain: Terrain, ar
         known_height=None if profile is None else profile.reference_height,
         ground_resolution=terrain.resolution,
     )
-    forecast = air.read_forecast([document.beside(name) for name in model.forecast], wanted)
+    forecast = air.read_forecast([document.beside(name) for name in model.forecast], query)
     return Winds(forecast.mean, forecast.fields if len(forecast.fields) > 1 else (), forecast.gusts)
 
 

@@ -1,1 +1,1 @@
-"""The readers of forecast files, one a format: which sheets a file holds, and how to read one."""
+"""The readers of forecast files, one a format: which fields a file holds, and how to read one."""

@@ -6,8 +6,8 @@ import codecs
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from gcs_windplan.errors import WindError
-from gcs_windplan.wind.sheets import Catalogue
+from gcs_windplan.errors import Problem, WindError
+from gcs_windplan.wind.field_index import FieldIndex
 
 _HEAD = 1000  # [bytes] that are looked at; in front of GRIB there may be a header of the message switch
 _READ = "NetCDF, GRIB and answers of Open-Meteo (JSON) are read"
@@ -20,8 +20,8 @@ _PACKED = {
 }
 
 
-def open_catalogue(path: Path) -> AbstractContextManager[Catalogue]:
-    """The sheets of a NetCDF or GRIB file or an answer of Open-Meteo, which can be read as long as it is open.
+def open_index(path: Path) -> AbstractContextManager[FieldIndex]:
+    """The fields of a NetCDF or GRIB file or an answer of Open-Meteo, which can be read as long as it is open.
 
     Raises `WindError` that begins with the path: for a file that is missing, empty or of another format, and whatever
     its reader raises.
@@ -41,21 +41,21 @@ def open_catalogue(path: Path) -> AbstractContextManager[Catalogue]:
         from gcs_windplan.wind.files.grib import open_grib
 
         return open_grib(path)
-    raise WindError(f"{path}: is of no format that is known here; {_READ}")
+    raise WindError(Problem(f"is of no format that is known here; {_READ}", file=path))
 
 
 def _head(path: Path) -> bytes:
     if path.is_dir():
-        raise WindError(f"{path}: is a folder; name one file: {_READ}")
+        raise WindError(Problem(f"is a folder; name one file: {_READ}", file=path))
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD + 4)
     except FileNotFoundError as error:
-        raise WindError(f"{path}: no such file; {_READ}") from error
+        raise WindError(Problem(f"no such file; {_READ}", file=path)) from error
     except OSError as error:
-        raise WindError(f"{path}: cannot be read ({error.strerror}); {_READ}") from error
+        raise WindError(Problem(f"cannot be read ({error.strerror}); {_READ}", file=path)) from error
     if not head.strip(b"\0 \r\n\t"):
-        raise WindError(f"{path}: is empty: download it again; {_READ}")
+        raise WindError(Problem(f"is empty: download it again; {_READ}", file=path))
     return head
 
 
@@ -69,8 +69,10 @@ def _refuse_others(path: Path, head: bytes, text: str) -> None:
     """Raise `WindError` for files that are not what was meant, and say what they are."""
     for magic, (name, command) in _PACKED.items():
         if head.startswith(magic):
-            raise WindError(f"{path}: is packed with {name}: unpack it first (`{command}`); {_READ}")
+            raise WindError(Problem(f"is packed with {name}: unpack it first (`{command}`); {_READ}", file=path))
     if text.startswith("<?xml") and "<html" not in text:
-        raise WindError(f"{path}: is XML, often a server's error: open it to see what went wrong; {_READ}")
+        raise WindError(Problem(f"is XML, often a server's error: open it to see what went wrong; {_READ}", file=path))
     if text.startswith("<"):
-        raise WindError(f"{path}: is a web page: the download went wrong, open it in a browser to see why; {_READ}")
+        raise WindError(
+            Problem(f"is a web page: the download went wrong, open it in a browser to see why; {_READ}", file=path)
+        )

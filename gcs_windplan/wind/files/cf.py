@@ -19,9 +19,9 @@ class Variable:
 
     def text(self, attribute: str) -> str:
         """A text attribute in lower case, empty where there is none."""
-        return self.told(attribute).lower()
+        return self.raw_text(attribute).lower()
 
-    def told(self, attribute: str) -> str:
+    def raw_text(self, attribute: str) -> str:
         """A text attribute as it stands, empty where there is none."""
         value = self.attributes.get(attribute, "")
         if isinstance(value, list | tuple | np.ndarray) and np.size(value) == 1:

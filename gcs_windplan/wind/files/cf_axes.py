@@ -61,32 +61,32 @@ def role(variable: Variable) -> Role | None:
 
 
 def _by_units(variable: Variable) -> Role | None:
-    units, said = variable.text("units"), variable.text("long_name").replace("_", " ")
+    units, description = variable.text("units"), variable.text("long_name").replace("_", " ")
     if re.fullmatch(r"degrees?_?n(orth)?", units):
         return "latitude"
     if re.fullmatch(r"degrees?_?e(ast)?", units):
         return "longitude"
     if " since " in units:
-        runs = re.fullmatch(_RUN, variable.name.lower()) or "reference time" in said
+        runs = re.fullmatch(_RUN, variable.name.lower()) or "reference time" in description
         return "run" if runs or variable.text("_CoordinateAxisType") == "runtime" else "time"
-    if "hybrid" in said or "model level" in said:
+    if "hybrid" in description or "model level" in description:
         return "model"
-    if compact(units) in PRESSURE.sizes:
+    if compact(units) in PRESSURE.factors:
         return "pressure"
     return None
 
 
 def _by_name(variable: Variable) -> Role | None:
-    name, said = variable.name.lower(), variable.text("long_name").replace("_", " ")
-    if "ellipsoid" in name + said:
+    name, description = variable.name.lower(), variable.text("long_name").replace("_", " ")
+    if "ellipsoid" in name + description:
         return None
     axis = variable.text("_CoordinateAxisType")
     if axis in ("geox", "geoy"):
         return "x" if axis == "geox" else "y"
     for pattern, found in _NAMES:
         if re.fullmatch(pattern, name):
-            return "altitude" if found == "height" and "sea level" in said else found
-    if "sea level" in said:
+            return "altitude" if found == "height" and "sea level" in description else found
+    if "sea level" in description:
         return "altitude"
     axes: dict[str, Role] = {"x": "x", "y": "y"}
     return axes.get(variable.text("axis"))

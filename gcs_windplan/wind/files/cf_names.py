@@ -11,9 +11,9 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from gcs_windplan.wind.field_index import SURFACE, Level, Quantity
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.units import is_something_else
-from gcs_windplan.wind.sheets import SURFACE, Level, Quantity
 
 WIND: tuple[Quantity, ...] = ("u", "v", "speed", "direction")
 
@@ -92,19 +92,19 @@ _WINDY = re.compile(r"[uv]_?(grd|wnd|wind|component).*|.*wind.*(speed|dir|comp).
 
 def meaning(variable: Variable) -> Meaning | None:
     """What a variable holds, None if it is none of our quantities or only tells how sure one is."""
-    base, level, guess = _parted(variable)
+    base, level, guess = _split_name(variable)
     quantity = _quantity(variable, base, level)
-    if quantity is None or _is_odd(variable, quantity) or is_something_else(variable.told("units"), quantity):
+    if quantity is None or _is_odd(variable, quantity) or is_something_else(variable.raw_text("units"), quantity):
         return None
-    said = f"{variable.text('long_name')} {variable.name.lower()} {variable.text('standard_name')}"
-    said = re.sub("[_-]", " ", said)
+    description = f"{variable.text('long_name')} {variable.name.lower()} {variable.text('standard_name')}"
+    description = re.sub("[_-]", " ", description)
     return Meaning(
         quantity=quantity,
         level=level,
         guess=guess,
-        along_grid=_along_grid(variable, said) if quantity in ("u", "v") else None,
-        towards=quantity == "direction" and bool(re.search(r"wind to direction|towards?\b|to which", said)),
-        logarithm=quantity == "pressure" and bool(re.search(r"\blnsp\b|logarithm", said)),
+        along_grid=_along_grid(variable, description) if quantity in ("u", "v") else None,
+        towards=quantity == "direction" and bool(re.search(r"wind to direction|towards?\b|to which", description)),
+        logarithm=quantity == "pressure" and bool(re.search(r"\blnsp\b|logarithm", description)),
     )
 
 
@@ -131,28 +131,28 @@ def _quantity(variable: Variable, base: str, level: Level | None) -> Quantity | 
 def _is_odd(variable: Variable, quantity: Quantity) -> bool:
     """Whether a variable is a statistic of the quantity, or of water."""
     words = set(re.split(r"[\W_]+", variable.name.lower()))
-    said = f"{variable.text('long_name')} {variable.text('standard_name')}".replace("_", " ")
+    description = f"{variable.text('long_name')} {variable.text('standard_name')}".replace("_", " ")
     methods = f"{variable.text('cell_methods')} {variable.text('GRIB_stepType')}"
     statistics = variable.text("Grib_Statistical_Interval_Type")
-    if words & set(_ODD_WORDS) or _ODD_PHRASES.search(said) or _ODD_METHODS.search(methods):
+    if words & set(_ODD_WORDS) or _ODD_PHRASES.search(description) or _ODD_METHODS.search(methods):
         return True
-    strongest = words & {"max", "maximum"} or "max" in f"{said} {methods} {statistics}"
+    strongest = words & {"max", "maximum"} or "max" in f"{description} {methods} {statistics}"
     return bool(strongest) and quantity != "gust"
 
 
-def _along_grid(variable: Variable, said: str) -> bool | None:
+def _along_grid(variable: Variable, description: str) -> bool | None:
     """Whether a component follows the grid, None where nothing tells. What the GRIB message said goes first."""
     relative = variable.numbers("GRIB_uvRelativeToGrid")
     if relative:
         return bool(relative[0])
-    if re.search(r"\b(grid (east|north)ward|[xy] wind|[xy] component|grid relative|along the grid)", said):
+    if re.search(r"\b(grid (east|north)ward|[xy] wind|[xy] component|grid relative|along the grid)", description):
         return True
-    if re.search(r"\b(east|north)ward|\bzonal|\bmeridional|earth relative|true (east|north)", said):
+    if re.search(r"\b(east|north)ward|\bzonal|\bmeridional|earth relative|true (east|north)", description):
         return False
     return None
 
 
-def _parted(variable: Variable) -> tuple[str, Level | None, Level | None]:
+def _split_name(variable: Variable) -> tuple[str, Level | None, Level | None]:
     """What is meant, the level that the name or wgrib2's `level` states with its unit, and one that can be guessed."""
     name = _plain(variable.name)
     for pattern, made in _LEVELS:
@@ -166,11 +166,15 @@ def _parted(variable: Variable) -> tuple[str, Level | None, Level | None]:
     for pattern in _BARE:
         match = re.fullmatch(pattern, name)
         if match:
-            return match["base"], _stated(variable), _bare(variable, match["base"], float(match["number"]))
-    return name, _stated(variable), _said(variable, name)
+            return (
+                match["base"],
+                _level_in_attribute(variable),
+                _level_of_number(variable, match["base"], float(match["number"])),
+            )
+    return name, _level_in_attribute(variable), _level_in_long_name(variable, name)
 
 
-def _bare(variable: Variable, base: str, number: float) -> Level:
+def _level_of_number(variable: Variable, base: str, number: float) -> Level:
     """The level of `u10`, `u100`, `u850` or `z500`: hPa where no metres can be meant or the text says so."""
     pressure = number >= 250 or base in ("z", "zg", "gh", "hgt")
     if pressure or re.search(r"hpa|\bmb|mbar|pressure", variable.text("long_name")):
@@ -178,7 +182,7 @@ def _bare(variable: Variable, base: str, number: float) -> Level:
     return Level("height", number)
 
 
-def _stated(variable: Variable) -> Level | None:
+def _level_in_attribute(variable: Variable) -> Level | None:
     """What wgrib2 writes into `level`."""
     text = variable.text("level")
     if text == "surface":
@@ -192,7 +196,7 @@ def _stated(variable: Variable) -> Level | None:
     return Level("height" if match[2] == "m above ground" else "altitude", number)
 
 
-def _said(variable: Variable, base: str) -> Level | None:
+def _level_in_long_name(variable: Variable, base: str) -> Level | None:
     """What a long name tells of heights or pressures: `10 metre U wind component`, `U at 10 M`, `at 850 mb`."""
     text = variable.text("long_name") or variable.text("description")  # WRF's word for it
     match = re.search(r"(?<![\d.])(\d+)[ -]?(m|met(?:er|re)s?|hpa|mb|mbar|millibars?)\b(?! ?(s|/))", text)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.files.cf import Variable
-from gcs_windplan.wind.files.units import PERIOD, unit_of
+from gcs_windplan.wind.files.units import PERIOD, unit_factor
 
 _CALENDARS = ("", "standard", "gregorian", "proleptic_gregorian")
 
@@ -52,7 +52,7 @@ def moments(variable: Variable, values: FloatArray) -> FloatArray:
 
 def spans(variable: Variable, values: FloatArray) -> FloatArray:
     """Seconds since the run began of the values of a forecast period. Raises `WindError` for unknown units."""
-    return np.round(values * unit_of(variable.name, variable.told("units"), PERIOD), 3)
+    return np.round(values * unit_factor(variable.name, variable.raw_text("units"), PERIOD), 3)
 
 
 def written(characters: npt.NDArray[np.bytes_]) -> FloatArray:
@@ -70,7 +70,7 @@ def _padded(variable: Variable) -> str:
 
     Raises `WindError` for a zone by any name but UTC.
     """
-    units = re.sub(r"([ :0-9][+-])(\d)(:\d\d)?$", r"\g<1>0\2\3", variable.told("units"))
+    units = re.sub(r"([ :0-9][+-])(\d)(:\d\d)?$", r"\g<1>0\2\3", variable.raw_text("units"))
     zone = re.search(r"since.*\d\s*([a-z][a-z/_]*)$", units, re.IGNORECASE)
     if zone and zone[1].upper() not in ("Z", "UTC", "GMT"):
         raise WindError(f"the times {variable.name} ({units}) are in the zone {zone[1]!r}: convert them to UTC")

@@ -2,7 +2,7 @@
 
 eccodes is slow to open a message: it is asked only once about all fields that differ in nothing but time and member.
 
-    file ─ messages ─ fields ─ header ─ kind (what, level, product, grid) ─▶ Sheets, which decode when they are read
+    file ─ messages ─ fields ─ header ─ kind (what, level, product, grid) ─▶ 2D fields, which decode when they are read
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.constants import STANDARD_GRAVITY
-from gcs_windplan.errors import WindError
-from gcs_windplan.wind.files.grib_file import Field, Header, fields_of, header_of, messages_in
-from gcs_windplan.wind.files.grib_grid import Layout, in_order, layout_of
+from gcs_windplan.errors import Problem, WindError
+from gcs_windplan.wind.field_index import Field2D, FieldIndex, Level, Quantity
+from gcs_windplan.wind.files.grib_file import Header, RawField, fields_of, header_of, messages_in
+from gcs_windplan.wind.files.grib_grid import GribLayout, in_order, layout_of
 from gcs_windplan.wind.files.grib_keys import GribError, Unused, handle_of, number_of, numbers_of, text_of, values_of
 from gcs_windplan.wind.files.grib_kinds import (
     GEOPOTENTIAL,
@@ -32,7 +33,6 @@ from gcs_windplan.wind.files.grib_kinds import (
     surface_of,
     with_terrain,
 )
-from gcs_windplan.wind.sheets import Catalogue, Level, Quantity, Sheet
 
 _KEPT = 4  # decoded fields
 _TIMELESS = "without a time that can be read: not used"
@@ -40,21 +40,21 @@ _FLAGS, _ALONG_GRID = "resolutionAndComponentFlags", 8  # edition 1, table 7; ed
 
 
 @contextmanager
-def open_grib(path: Path) -> Iterator[Catalogue]:
-    """The sheets of a GRIB file, which can be read as long as the context lasts.
+def open_grib(path: Path) -> Iterator[FieldIndex]:
+    """The fields of a GRIB file, which can be read as long as the context lasts.
 
     Grids have their columns along x (mostly eastward) and their rows along y (mostly northward), whichever way the
     file stores them. Raises `WindError`, which begins with the path, for a file that is missing, cut short or no GRIB,
-    and when a sheet cannot be decoded.
+    and when a field cannot be decoded.
     """
     if not path.is_file():
-        raise WindError(f"{path}: no such file")
+        raise WindError(Problem("no such file", file=path))
     try:
         file = path.open("rb")
     except OSError as error:
-        raise WindError(f"{path}: cannot be opened ({error.strerror})") from error
+        raise WindError(Problem(f"cannot be opened ({error.strerror})", file=path)) from error
     with file:
-        yield _Reader(path, file).catalogue()
+        yield _GribReader(path, file).index()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +68,7 @@ class _Kind:
     units: str
     quantity: Quantity
     level: Level
-    layout: Layout
+    layout: GribLayout
     along_grid: bool
     half_levels: tuple[FloatArray, FloatArray] | None
     mean: bool
@@ -82,34 +82,34 @@ class _Kind:
         return number if self.ensemble and not (self.single and number == 0) else None
 
 
-class _Reader:
+class _GribReader:
     """An open file and what was found in it so far."""
 
     def __init__(self, path: Path, file: BinaryIO) -> None:
         self.path, self.file = path, file
         self.offset = 0
         self.title = ""
-        self.sheets: list[Sheet] = []
-        self.means: list[Sheet] = []
+        self.fields: list[Field2D] = []
+        self.means: list[Field2D] = []
         self.unused: Counter[str] = Counter()
         self.kinds: dict[bytes, _Kind | str] = {}
-        self.layouts: dict[str, Layout] = {}
+        self.layouts: dict[str, GribLayout] = {}
         self.half_levels: dict[bytes, tuple[FloatArray, FloatArray] | None] = {}
-        self.decoded: dict[Field, FloatArray] = {}
+        self.decoded: dict[RawField, FloatArray] = {}
 
-    def catalogue(self) -> Catalogue:
-        """All sheets of the file. Raises `WindError`."""
+    def index(self) -> FieldIndex:
+        """All fields of the file. Raises `WindError`."""
         with self.naming_file():
             for message in messages_in(self.file):
                 self.offset = message.offset
                 for field in fields_of(self.file, message):
                     self.take_up(field)
-        if any(sheet.member is not None for sheet in self.sheets):
+        if any(field2d.member is not None for field2d in self.fields):
             self.unused["of means of an ensemble whose members are there too: not used"] += len(self.means)
         else:
-            self.sheets += self.means
+            self.fields += self.means
         unused = [f"{n} field{'s' if n > 1 else ''} {why}" for why, n in self.unused.items() if why and n]
-        return Catalogue(self.path.name, tuple(with_terrain(self.sheets)), self.title, tuple(unused))
+        return FieldIndex(self.path.name, tuple(with_terrain(self.fields)), self.title, tuple(unused), "GRIB")
 
     @contextmanager
     def naming_file(self) -> Iterator[None]:
@@ -117,13 +117,13 @@ class _Reader:
         try:
             yield
         except WindError as error:
-            raise WindError(f"{self.path}: {error}") from error
+            raise error.in_files([self.path]) from error
         except (GribError, OSError, ValueError, LookupError) as error:
             what = f"its message at byte {self.offset} cannot be decoded ({error})"
-            raise WindError(f"{self.path}: {what}: download it again, or take another file") from error
+            raise WindError(Problem(f"{what}: download it again, or take another file", file=self.path)) from error
 
-    def take_up(self, field: Field) -> None:
-        """Makes a sheet of a field, or counts why not."""
+    def take_up(self, field: RawField) -> None:
+        """Makes a field of a field, or counts why not."""
         header = header_of(self.file, field)
         if header.shared not in self.kinds:
             with handle_of(self.file, field) as handle:
@@ -137,11 +137,11 @@ class _Reader:
         elif header.time is None or header.run is None:
             self.unused[_TIMELESS] += 1
         else:
-            (self.means if kind.mean else self.sheets).append(self.sheet(field, header, kind))
+            (self.means if kind.mean else self.fields).append(self.field2d(field, header, kind))
 
-    def sheet(self, field: Field, header: Header, kind: _Kind) -> Sheet:
-        """A field's sheet."""
-        return Sheet(
+    def field2d(self, field: RawField, header: Header, kind: _Kind) -> Field2D:
+        """A field's field."""
+        return Field2D(
             quantity=kind.quantity,
             level=kind.level,
             grid=kind.layout.grid,
@@ -175,7 +175,7 @@ class _Reader:
             number=number_of(handle, "perturbationNumber"),
         )
 
-    def layout(self, handle: int) -> Layout:
+    def layout(self, handle: int) -> GribLayout:
         """The layout of a field, shared by all fields on the same grid. Raises `Unused`."""
         key = text_of(handle, "md5GridSection")
         if key not in self.layouts:
@@ -189,10 +189,10 @@ class _Reader:
         pv = numbers_of(handle, "pv")
         return self.half_levels.setdefault(pv.tobytes(), half_levels_in(pv))
 
-    def values(self, field: Field, kind: _Kind, rows: IntArray, columns: IntArray) -> FloatArray:
+    def values(self, field: RawField, kind: _Kind, rows: IntArray, columns: IntArray) -> FloatArray:
         """Rows and columns of a field in its quantity's unit, NaN where missing. Raises `WindError`."""
         if self.file.closed:
-            raise WindError(f"{self.path}: it is closed: read its sheets inside of `with open_grib(...)`")
+            raise WindError(Problem("it is closed: read its fields inside of `with open_grib(...)`", file=self.path))
         with self.naming_file():
             whole = self.whole(field, kind.layout)
         values = whole[np.ix_(rows, columns)]
@@ -200,7 +200,7 @@ class _Reader:
             values /= STANDARD_GRAVITY
         return np.exp(values) if kind.name == "lnsp" else values
 
-    def whole(self, field: Field, layout: Layout) -> FloatArray:
+    def whole(self, field: RawField, layout: GribLayout) -> FloatArray:
         """All values of a field in the order of its grid; the last few are kept."""
         if field not in self.decoded:
             self.offset = field[0].offset

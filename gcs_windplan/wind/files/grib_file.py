@@ -21,7 +21,7 @@ _UNITS_1, _UNITS_2 = _UNITS | {13: 900, 14: 1800, 254: 1}, _UNITS | {13: 1}
 _ANALYSIS, _LONG_STEP = 1, 10  # edition 1, table 5
 
 
-class Span(NamedTuple):
+class ByteRange(NamedTuple):
     """A part of the file [bytes]."""
 
     offset: int
@@ -29,7 +29,7 @@ class Span(NamedTuple):
 
 
 #: A field: its whole message in edition 1, its sections in edition 2, section 0 first.
-Field: TypeAlias = tuple[Span, ...]
+RawField: TypeAlias = tuple[ByteRange, ...]
 
 
 class Header(NamedTuple):
@@ -44,17 +44,17 @@ class Header(NamedTuple):
     number: int | None = None
 
 
-def read_span(file: BinaryIO, span: Span) -> bytes:
+def read_bytes(file: BinaryIO, span: ByteRange) -> bytes:
     """The octets of a part of the file."""
     file.seek(span.offset)
     return file.read(span.length)
 
 
-def messages_in(file: BinaryIO) -> Iterator[Span]:
+def messages_in(file: BinaryIO) -> Iterator[ByteRange]:
     """Every message; what lies between messages is skipped. Raises `WindError` for a file that is not whole."""
     size, position, good = file.seek(0, 2), 0, 0
     while (start := _search(file, position)) is not None:
-        span = Span(start, _length(file, start))
+        span = ByteRange(start, _length(file, start))
         position = start + (span.length or 4)
         if position > size:
             raise WindError(
@@ -62,12 +62,12 @@ def messages_in(file: BinaryIO) -> Iterator[Span]:
                 " was cut short, fetch it again"
             )
         if span.length:
-            if read_span(file, Span(position - 4, 4)) != b"7777":
+            if read_bytes(file, ByteRange(position - 4, 4)) != b"7777":
                 raise WindError(f"its message at byte {start} does not end where it should: download it again")
             good += 1
             yield span
     if not good:
-        packed = read_span(file, Span(0, 2)) in (b"BZ", b"\x1f\x8b", b"PK")
+        packed = read_bytes(file, ByteRange(0, 2)) in (b"BZ", b"\x1f\x8b", b"PK")
         raise WindError("it is compressed: unpack it first" if packed else "it is no GRIB: there is no message in it")
 
 
@@ -83,7 +83,7 @@ def _search(file: BinaryIO, position: int) -> int | None:
 
 def _length(file: BinaryIO, start: int) -> int:
     """The length of a message [bytes], 0 where the letters GRIB begin none."""
-    head = read_span(file, Span(start, 16))
+    head = read_bytes(file, ByteRange(start, 16))
     if len(head) < 16:
         return 16
     if head[7] != 1:
@@ -94,33 +94,33 @@ def _length(file: BinaryIO, start: int) -> int:
     return (length - (1 << 23)) * 120 - rest + 4  # beyond 16 MB ECMWF counts in units of 120 bytes
 
 
-def _sections_1(file: BinaryIO, start: int) -> list[Span]:
+def _sections_1(file: BinaryIO, start: int) -> list[ByteRange]:
     """Sections 1 to 4 of a message of edition 1, without those that it has not."""
-    flags, position, sections = read_span(file, Span(start + 15, 1))[0], start + 8, []
+    flags, position, sections = read_bytes(file, ByteRange(start + 15, 1))[0], start + 8, []
     for there in (True, flags & 128, flags & 64, True):
         if there:
-            sections.append(Span(position, int.from_bytes(read_span(file, Span(position, 3)))))
+            sections.append(ByteRange(position, int.from_bytes(read_bytes(file, ByteRange(position, 3)))))
             position += sections[-1].length
     return sections
 
 
-def fields_of(file: BinaryIO, message: Span) -> Iterator[Field]:
+def fields_of(file: BinaryIO, message: ByteRange) -> Iterator[RawField]:
     """The fields of a message. Raises `WindError`.
 
     After its data (section 7) a message of edition 2 may go on with any of sections 2 to 7; those not repeated hold on.
     """
     damaged = WindError(f"the sections of its message at byte {message.offset} do not fit: download it again")
-    if read_span(file, Span(message.offset, 8))[7] == 1:
+    if read_bytes(file, ByteRange(message.offset, 8))[7] == 1:
         last = _sections_1(file, message.offset)[-1]
         if message.length < 1 << 23 and last.offset + last.length != message.offset + message.length - 4:
             raise damaged
         yield (message,)
         return
-    sections = {0: Span(message.offset, 16)}
-    bitmap, position, end = Span(0, 0), message.offset + 16, message.offset + message.length - 4
+    sections = {0: ByteRange(message.offset, 16)}
+    bitmap, position, end = ByteRange(0, 0), message.offset + 16, message.offset + message.length - 4
     while position < end:
-        head = read_span(file, Span(position, 6))
-        span, number = Span(position, int.from_bytes(head[:4])), head[4]
+        head = read_bytes(file, ByteRange(position, 6))
+        span, number = ByteRange(position, int.from_bytes(head[:4])), head[4]
         position += span.length
         if span.length < 5 or not 1 <= number <= 7 or position > end:
             raise damaged
@@ -133,19 +133,19 @@ def fields_of(file: BinaryIO, message: Span) -> Iterator[Field]:
             yield tuple(sections[n] for n in sorted(sections))
 
 
-def header_of(file: BinaryIO, field: Field) -> Header:
+def header_of(file: BinaryIO, field: RawField) -> Header:
     """What the first sections of a field say. Raises `WindError`."""
     if len(field) == 1:
         return _header_1(file, field[0].offset)
     if len(field) < 7:
         raise WindError(f"its message at byte {field[0].offset} lacks a section: download it again")
-    return _header_2([read_span(file, span) for span in field[:-3]])
+    return _header_2([read_bytes(file, span) for span in field[:-3]])
 
 
 def _header_1(file: BinaryIO, start: int) -> Header:
     spans = _sections_1(file, start)
-    one = read_span(file, spans[0])
-    two = read_span(file, spans[1]) if one[7] & 128 else b""
+    one = read_bytes(file, spans[0])
+    two = read_bytes(file, spans[1]) if one[7] & 128 else b""
     shared = one[:12] + one[17:18] + one[20:24] + one[25:] + two
     run = _moment(100 * (one[24] - 1) + one[12], *one[13:17])
     first, second, span = one[18:21]

@@ -8,8 +8,8 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import Grid
 from gcs_windplan.wind.files.grib_keys import Unused, degrees_of, number_of, numbers_of, put, text_of
-from gcs_windplan.wind.sheets import Grid
 
 _MOST = 200_000_000  # nodes of a grid: more than any forecast has, fewer than memory holds
 _GRIDS = {
@@ -27,7 +27,7 @@ _ROUNDING = {1: 5e-4, 2: 5e-7}  # [deg] of angles, by edition
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Layout:
+class GribLayout:
     """A grid, and how the file stores the values (rows, columns) of `shape` on it."""
 
     grid: Grid
@@ -36,7 +36,7 @@ class Layout:
     mapped: bool
 
 
-def layout_of(handle: int) -> Layout:
+def layout_of(handle: int) -> GribLayout:
     """The grid of a field and how it is stored. Raises `Unused` for grids that are not read."""
     kind, scanning = text_of(handle, "gridType"), number_of(handle, "scanningMode")
     if kind not in _GRIDS:
@@ -53,7 +53,7 @@ def layout_of(handle: int) -> Layout:
     nodes = _lines(handle, shape, scanning) if kind.endswith("_ll") else _nodes(handle, kind, shape, scanning)
     if kind == "rotated_ll":
         nodes = _unrotated(handle, *nodes)
-    return Layout(Grid(*nodes, name), shape, scanning, mapped=not kind.startswith("regular"))
+    return GribLayout(Grid(*nodes, name), shape, scanning, mapped=not kind.startswith("regular"))
 
 
 def in_order(stored: FloatArray, shape: tuple[int, int], scanning: int) -> FloatArray:

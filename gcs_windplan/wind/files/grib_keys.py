@@ -10,7 +10,7 @@ import eccodes
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.wind.files.grib_file import Field, read_span
+from gcs_windplan.wind.files.grib_file import RawField, read_bytes
 
 GribError = eccodes.CodesInternalError
 UNKNOWN = eccodes.CODES_MISSING_LONG
@@ -22,9 +22,9 @@ class Unused(Exception):
 
 
 @contextmanager
-def handle_of(file: BinaryIO, field: Field) -> Iterator[int]:
+def handle_of(file: BinaryIO, field: RawField) -> Iterator[int]:
     """A field as a message of its own, in eccodes' hands."""
-    message = b"".join(read_span(file, span) for span in field)
+    message = b"".join(read_bytes(file, span) for span in field)
     if len(field) > 1:
         message = message[:8] + (len(message) + 4).to_bytes(8) + message[16:] + b"7777"
     handle = eccodes.codes_new_from_message(message)

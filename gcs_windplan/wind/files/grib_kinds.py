@@ -10,9 +10,9 @@ from typing import TypeAlias
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
+from gcs_windplan.wind.field_index import Field2D, Level, LevelKind, Quantity
 from gcs_windplan.wind.files.grib_file import DERIVED, ENDS, MEMBERS, PRODUCTS
 from gcs_windplan.wind.files.grib_keys import UNKNOWN, Unused, number_of, text_of
-from gcs_windplan.wind.sheets import Level, LevelKind, Quantity, Sheet
 
 #: Names that eccodes gives to parameters: ECMWF's, in capitals Deutscher Wetterdienst's, long ones from CF.
 _NAMES: Mapping[Quantity, str] = {
@@ -98,9 +98,9 @@ def _level(handle: int) -> Level | None:
         layer: tuple[LevelKind, float] | None = ("model", 1.0) if first == second and first in _LAYERS else None
         found = _LEVELS_2.get(first) if second == 255 else layer
         scaled, scale = (number_of(handle, f"scale{which}OfFirstFixedSurface") for which in ("dValue", "Factor"))
-        told = UNKNOWN not in (scaled, scale)
-        value = scaled / 10.0**scale if told else 0.0
-        if found is not None and found[1] and not told:
+        known = UNKNOWN not in (scaled, scale)
+        value = scaled / 10.0**scale if known else 0.0
+        if found is not None and found[1] and not known:
             return None
     return None if found is None else Level(found[0], value * found[1])
 
@@ -132,11 +132,13 @@ def half_levels_in(pv: FloatArray) -> tuple[FloatArray, FloatArray] | None:
     return (a, b) if fit else None
 
 
-def with_terrain(sheets: list[Sheet]) -> Iterator[Sheet]:
-    """The sheets, where a geopotential that is on model level 1 alone is the terrain's, as ECMWF has it."""
-    levels = {sheet.level.value for sheet in sheets if sheet.quantity == "height" and sheet.level.kind == "model"}
-    for sheet in sheets:
-        if sheet.name == "z" and sheet.level == Level("model", 1.0) and levels == {1.0}:
-            yield replace(sheet, quantity="terrain", level=Level("surface"), time=None, half_levels=None)
+def with_terrain(fields: list[Field2D]) -> Iterator[Field2D]:
+    """The fields, where a geopotential that is on model level 1 alone is the terrain's, as ECMWF has it."""
+    levels = {
+        field2d.level.value for field2d in fields if field2d.quantity == "height" and field2d.level.kind == "model"
+    }
+    for field2d in fields:
+        if field2d.name == "z" and field2d.level == Level("model", 1.0) and levels == {1.0}:
+            yield replace(field2d, quantity="terrain", level=Level("surface"), time=None, half_levels=None)
         else:
-            yield sheet
+            yield field2d

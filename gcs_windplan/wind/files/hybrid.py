@@ -15,7 +15,7 @@ from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.netcdf_file import NetcdfFile
-from gcs_windplan.wind.files.units import PRESSURE, compact, unit_of
+from gcs_windplan.wind.files.units import PRESSURE, compact, unit_factor
 
 #: a [Pa] and b, from the top down.
 Halves: TypeAlias = tuple[FloatArray, FloatArray]
@@ -50,7 +50,7 @@ def model_levels(file: NetcdfFile, axis: Variable, data: Variable) -> ModelLevel
     for found in (
         _between_bounds(file, axis, top_down),
         _interfaces(file, axis, data),
-        None if middles is None else _made(*(part[top_down] for part in middles)),
+        None if middles is None else _from_full_levels(*(part[top_down] for part in middles)),
     ):
         if found is None or not _ends_at_ground(*found):
             continue
@@ -70,7 +70,7 @@ def _ends_at_ground(a: FloatArray, b: FloatArray) -> bool:
 
 def _between_bounds(file: NetcdfFile, axis: Variable, top_down: IntArray) -> Halves | None:
     """Half levels from the bounds of all levels, where each level ends at the next one's beginning."""
-    bounds = file.variables.get(axis.told("bounds"))
+    bounds = file.variables.get(axis.raw_text("bounds"))
     edges = None if bounds is None else _coefficients(file, bounds) or _by_suffix(file, axis, bounds)
     if edges is None or any(edge.ndim != 2 or edge.shape != (len(top_down), 2) for edge in edges):
         return None
@@ -104,7 +104,7 @@ def _interfaces(file: NetcdfFile, axis: Variable, data: Variable) -> Halves | No
     return found[0][order], found[1][order]
 
 
-def _made(a: FloatArray, b: FloatArray) -> Halves | None:
+def _from_full_levels(a: FloatArray, b: FloatArray) -> Halves | None:
     """Half levels from the levels in the middle between them, from the top down, where all levels are there.
 
     Each level's a and b are the means of its two half levels' (Simmons and Burridge 1981), and both are 0 at the top.
@@ -127,7 +127,7 @@ def _coefficients(file: NetcdfFile, variable: Variable) -> Halves | None:
 
 
 def _terms(variable: Variable) -> dict[str, str]:
-    return dict(re.findall(r"(\w+)\s*:\s*(\S+)", variable.told("formula_terms")))
+    return dict(re.findall(r"(\w+)\s*:\s*(\S+)", variable.raw_text("formula_terms")))
 
 
 def _evaluated(file: NetcdfFile, terms: dict[str, str]) -> Halves | None:
@@ -137,9 +137,11 @@ def _evaluated(file: NetcdfFile, terms: dict[str, str]) -> Halves | None:
         return None
     try:
         if "ap" in named:
-            a = file.values(named["ap"]) * unit_of(named["ap"].name, named["ap"].told("units"), PRESSURE)
-        elif "a" in named and "p0" in named and compact(named["a"].told("units")) not in PRESSURE.sizes:
-            reference = file.values(named["p0"]) * unit_of(named["p0"].name, named["p0"].told("units"), PRESSURE)
+            a = file.values(named["ap"]) * unit_factor(named["ap"].name, named["ap"].raw_text("units"), PRESSURE)
+        elif "a" in named and "p0" in named and compact(named["a"].raw_text("units")) not in PRESSURE.factors:
+            reference = file.values(named["p0"]) * unit_factor(
+                named["p0"].name, named["p0"].raw_text("units"), PRESSURE
+            )
             a = file.values(named["a"]) * reference.ravel()[0]
         else:
             return None

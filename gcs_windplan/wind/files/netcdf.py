@@ -16,35 +16,36 @@ import netCDF4
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
-from gcs_windplan.errors import WindError
+from gcs_windplan.errors import Problem, WindError
+from gcs_windplan.wind.field_index import SURFACE, Field2D, FieldIndex, Level, Quantity
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_axes import CLOCK, Role, role
 from gcs_windplan.wind.files.cf_names import WIND, Meaning, looks_like_wind, meaning
 from gcs_windplan.wind.files.netcdf_axes import Axes, Levels
 from gcs_windplan.wind.files.netcdf_file import NetcdfFile, refuse_cut_short
-from gcs_windplan.wind.files.netcdf_grid import Layout, Layouts
+from gcs_windplan.wind.files.netcdf_grid import NetcdfLayout, NetcdfLayouts
 from gcs_windplan.wind.files.units import check_units, converted, unlogged
-from gcs_windplan.wind.sheets import SURFACE, Catalogue, Level, Quantity, Sheet
 
 _ON_MODEL_LEVELS = ("temperature", "humidity")
 _FEW = 6  # variables that are named one by one
 
 
 @contextmanager
-def open_netcdf(path: Path) -> Iterator[Catalogue]:
-    """The sheets of a NetCDF file, which can be read as long as it is open.
+def open_netcdf(path: Path) -> Iterator[FieldIndex]:
+    """The fields of a NetCDF file, which can be read as long as it is open.
 
-    Raises `WindError`, here and in `Sheet.read`, that begins with the path: for a file that cannot be read; for wind
+    Raises `WindError`, here and in `Field2D.read`, that begins with the path: for a file that cannot be read; for wind
     whose times, levels or units cannot be told, if there is no other in the file. What else cannot be used stands in
-    `Catalogue.unused`.
+    `FieldIndex.unused`.
     """
     refuse_cut_short(path)
     try:
         dataset = netCDF4.Dataset(path)
     except (OSError, RuntimeError) as error:
-        raise WindError(f"{path}: cannot be read as NetCDF ({error})") from error
+        raise WindError(Problem(f"cannot be read as NetCDF ({error})", file=path)) from error
     try:
-        yield _Reader(path, NetcdfFile(dataset)).catalogue()
+        kind = "NetCDF4" if dataset.data_model.startswith("NETCDF4") else "NetCDF classic"
+        yield replace(_NetcdfReader(path, NetcdfFile(dataset)).index(), format=kind)
     finally:
         dataset.close()
 
@@ -61,41 +62,41 @@ class _Source:
     column: Variable
     meaning: Meaning
     quantity: Quantity
-    layout: Layout
+    layout: NetcdfLayout
     version: str | None
 
 
-class _Reader:
-    """An open file on its way to a catalogue."""
+class _NetcdfReader:
+    """An open file on its way to a index."""
 
     def __init__(self, path: Path, file: NetcdfFile) -> None:
         self._path = path
         self._file = file
         self._axes = Axes(file)
-        self._layouts = Layouts(self._axes)
-        self._passed_over: dict[str, list[str]] = {}
+        self._layouts = NetcdfLayouts(self._axes)
+        self._unused: dict[str, list[str]] = {}
         self._broken = False
 
-    def catalogue(self) -> Catalogue:
-        """All sheets. Raises `WindError` where times, levels or units of wind cannot be told and no wind is left."""
-        with self._telling("it"):
-            sheets = [sheet for variable in self._file.variables.values() for sheet in self._sheets_of(variable)]
-            sheets = self._on_one_grid(sheets)
+    def index(self) -> FieldIndex:
+        """All fields. Raises `WindError` where times, levels or units of wind cannot be told and no wind is left."""
+        with self._naming_file("it"):
+            fields = [field2d for variable in self._file.variables.values() for field2d in self._fields_of(variable)]
+            fields = self._on_one_grid(fields)
             if self._file.groups:
-                self._pass_over(", ".join(self._file.groups), "groups are not read: lift them with `ncks -G :`")
-            unused = tuple(_said(names, reason) for reason, names in self._passed_over.items())
-            if self._broken and not any(sheet.quantity in ("u", "v", "speed") for sheet in sheets):
+                self._note_unused(", ".join(self._file.groups), "groups are not read: lift them with `ncks -G :`")
+            unused = tuple(_unused_note(names, reason) for reason, names in self._unused.items())
+            if self._broken and not any(field2d.quantity in ("u", "v", "speed") for field2d in fields):
                 raise WindError("; ".join(unused))
-        return Catalogue(self._path.name, tuple(sheets), self._file.title, unused)
+        return FieldIndex(self._path.name, tuple(fields), self._file.title, unused)
 
-    def _sheets_of(self, variable: Variable) -> list[Sheet]:
-        """The sheets of a variable; none where it is no wind, or cannot be used, which is noted."""
+    def _fields_of(self, variable: Variable) -> list[Field2D]:
+        """The fields of a variable; none where it is no wind, or cannot be used, which is noted."""
         if not self._file.is_numeric(variable) or variable.dimensions == (variable.name,):
             return []
         found = meaning(variable)
         if found is None:
             if looks_like_wind(variable) and len(variable.dimensions) > 1:
-                self._pass_over(variable.name, "by name or attributes no wind at a height, or a statistic of it")
+                self._note_unused(variable.name, "by name or attributes no wind at a height, or a statistic of it")
             return []
         if any(self._role(variable, dimension) == "depth" for dimension in variable.dimensions):
             return []
@@ -103,24 +104,24 @@ class _Reader:
         try:
             source = self._source(variable, found)
             try:
-                return list(self._sheets(source))
+                return list(self._fields(source))
             except WindError:
                 self._broken = self._broken or is_wind
                 raise
         except WindError as error:
             if is_wind or len(variable.dimensions) > 1:
-                self._pass_over(variable.name, str(error))
+                self._note_unused(variable.name, str(error))
             return []
 
-    def _pass_over(self, name: str, reason: str) -> None:
-        self._passed_over.setdefault(reason, []).append(name)
+    def _note_unused(self, name: str, reason: str) -> None:
+        self._unused.setdefault(reason, []).append(name)
 
     def _source(self, variable: Variable, found: Meaning) -> _Source:
         """Where a variable's values stand. Raises `WindError` for other grids, and axes that are not known."""
         if 0 in variable.shape:
             raise WindError("it is empty: nothing was written into it")
         if found.quantity not in WIND:  # which say so when they are read: the rest can be done without
-            check_units(variable.name, variable.told("units"), found.quantity, found.logarithm)
+            check_units(variable.name, variable.raw_text("units"), found.quantity, found.logarithm)
         layout = self._layouts.of(variable)
         free = tuple(d for d in variable.dimensions if d not in (layout.rows, layout.columns))
         column = replace(variable, dimensions=free, shape=tuple(self._file.dimensions[d] for d in free))
@@ -130,7 +131,7 @@ class _Reader:
 
     def _check_axes(self, column: Variable) -> None:
         """Raise `WindError` for axes that are not known."""
-        timed = {d for time in self._axes.beside(column, *CLOCK) for d in time.dimensions} | {"Time"}  # WRF's
+        timed = {d for time in self._axes.auxiliary(column, *CLOCK) for d in time.dimensions} | {"Time"}  # WRF's
         for dimension, size in zip(column.dimensions, column.shape, strict=True):
             if size > 1 and dimension not in timed and self._role(column, dimension) is None:
                 raise WindError(
@@ -140,14 +141,14 @@ class _Reader:
 
     def _role(self, variable: Variable, dimension: str) -> Role | None:
         """What a dimension counts; members and versions need no numbers to be known."""
-        axis = self._axes.along(variable, dimension)
+        axis = self._axes.coordinate_along(variable, dimension)
         if axis is not None:
             return self._axes.role(axis)
         named = role(self._file.variables.get(dimension, Variable(dimension, (dimension,), (1,), {})))
         return named if named in ("member", "version") else None
 
-    def _sheets(self, source: _Source) -> Iterator[Sheet]:
-        """The sheets of a variable. Raises `WindError` for times and levels that cannot be told."""
+    def _fields(self, source: _Source) -> Iterator[Field2D]:
+        """The fields of a variable. Raises `WindError` for times and levels that cannot be told."""
         variable, column = source.variable, source.column
         levels = self._axes.levels(column, source.meaning)
         quantity = _at(levels, source.quantity)
@@ -156,11 +157,11 @@ class _Reader:
         time, run = self._axes.times(column, source.meaning)
         members = self._members(column)
         made = partial(
-            Sheet,
+            Field2D,
             quantity=quantity,
             grid=source.layout.grid,
             name=variable.name,
-            units=variable.told("units"),
+            units=variable.raw_text("units"),
             along_grid=self._along_grid(source),
             half_levels=levels.half_levels,
         )
@@ -182,7 +183,7 @@ class _Reader:
         for dimension in variable.dimensions:
             size = self._file.dimensions[dimension]
             if size > 1 and self._role(variable, dimension) == "member":
-                axis = self._axes.along(variable, dimension)
+                axis = self._axes.coordinate_along(variable, dimension)
                 values = np.arange(size) if axis is None else self._file.values(axis)
                 known = bool((np.abs(values) < 2**31).all()) and len(np.unique(values.astype(np.int64))) == size
                 return dimension, [int(value) for value in (values if known else np.arange(size))]
@@ -192,39 +193,39 @@ class _Reader:
         """Whether u or v follow the grid: on grids of their own kind weather models write them so by custom."""
         if source.quantity not in ("u", "v") or source.layout.grid.regular:
             return False
-        told = source.meaning.along_grid
-        if told is None and "south_north" not in source.variable.dimensions:  # WRF is known for it
-            self._pass_over(
+        along_grid = source.meaning.along_grid
+        if along_grid is None and "south_north" not in source.variable.dimensions:  # WRF is known for it
+            self._note_unused(
                 source.variable.name,
                 "used as following the grid, not true north, as most models write it, for the file does not tell: if"
                 " that is wrong, set the `standard_name` to eastward_wind and northward_wind",
             )
-        return True if told is None else told
+        return True if along_grid is None else along_grid
 
-    def _on_one_grid(self, sheets: list[Sheet]) -> list[Sheet]:
+    def _on_one_grid(self, fields: list[Field2D]) -> list[Field2D]:
         """Without u and v of levels where they share no grid: those stand on the sides of their cells."""
         grids: dict[tuple[str, Level], set[object]] = defaultdict(set)
-        for sheet in sheets:
-            grids[sheet.quantity, sheet.level].add(sheet.grid.key)
+        for field2d in fields:
+            grids[field2d.quantity, field2d.level].add(field2d.grid.key)
         apart = {
             level
             for quantity, level in grids
             if quantity == "u" and ("v", level) in grids and not grids["u", level] & grids["v", level]
         }
-        torn = {s.name for s in sheets if s.quantity in ("u", "v") and s.level in apart}
+        torn = {s.name for s in fields if s.quantity in ("u", "v") and s.level in apart}
         for name in sorted(torn):
-            self._pass_over(name, "u and v stand at different places, on a staggered grid: bring them to one first")
-        return [s for s in sheets if not (s.quantity in ("u", "v") and s.level in apart)]
+            self._note_unused(name, "u and v stand at different places, on a staggered grid: bring them to one first")
+        return [s for s in fields if not (s.quantity in ("u", "v") and s.level in apart)]
 
     def _read(self, source: _Source, place: dict[str, int], rows: IntArray, columns: IntArray) -> FloatArray:
-        """The values of a sheet in the unit of its quantity."""
-        variable, held, units = source.variable, source.quantity, source.variable.told("units")
-        with self._telling(variable.name):
+        """The values of a field in the unit of its quantity."""
+        variable, quantity, units = source.variable, source.quantity, source.variable.raw_text("units")
+        with self._naming_file(variable.name):
             values = self._plane(source, place, rows, columns)
             if source.meaning.logarithm:
                 return unlogged(values, variable.name)
-            values = converted(values, held, variable.name, units)
-        if held == "direction":
+            values = converted(values, quantity, variable.name, units)
+        if quantity == "direction":
             values = np.mod(values + (180.0 if source.meaning.towards else 0.0), 360.0)
         return values
 
@@ -238,7 +239,7 @@ class _Reader:
         if source.version is None:
             return self._file.plane(variable, place, *across)
         size = self._file.dimensions[source.version]
-        axis = self._axes.along(variable, source.version)
+        axis = self._axes.coordinate_along(variable, source.version)
         order = np.arange(size) if axis is None else np.argsort(self._file.values(axis))
         planes = [self._file.plane(variable, {**place, source.version: int(one)}, *across) for one in order]
         first = planes[0]
@@ -247,15 +248,15 @@ class _Reader:
         return first
 
     @contextmanager
-    def _telling(self, what: str) -> Iterator[None]:
+    def _naming_file(self, what: str) -> Iterator[None]:
         """Every error on the way begins with the path."""
         try:
             yield
         except WindError as error:
-            raise WindError(f"{self._path}: {error}") from error
+            raise error.in_files([self._path]) from error
         except (OSError, RuntimeError) as error:
             raise WindError(
-                f"{self._path}: {what} cannot be read ({error}): it is damaged, or packed in an unknown way"
+                Problem(f"{what} cannot be read ({error}): it is damaged, or packed in an unknown way", file=self._path)
             ) from error
 
 
@@ -267,7 +268,7 @@ def _at(levels: Levels, quantity: Quantity) -> Quantity | None:
     return None if quantity in _ON_MODEL_LEVELS and kind != "model" else quantity
 
 
-def _said(names: list[str], reason: str) -> str:
+def _unused_note(names: list[str], reason: str) -> str:
     """Which variables were passed over and why."""
     if reason.startswith(f"{names[0]} "):
         return reason

@@ -8,14 +8,14 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import SURFACE, Level, LevelKind
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_axes import LEVELS, Role, role
 from gcs_windplan.wind.files.cf_names import Meaning
 from gcs_windplan.wind.files.cf_time import Coordinate, moments, spans, written
 from gcs_windplan.wind.files.hybrid import Halves, model_levels
 from gcs_windplan.wind.files.netcdf_file import NetcdfFile
-from gcs_windplan.wind.files.units import LENGTH, PRESSURE, unit_of
-from gcs_windplan.wind.sheets import SURFACE, Level, LevelKind
+from gcs_windplan.wind.files.units import LENGTH, PRESSURE, unit_factor
 
 _STATIC = ("terrain", "roughness")
 _ON_THE_SURFACE = (*_STATIC, "pressure")
@@ -49,27 +49,27 @@ class Axes:
         """Every coordinate of the file that counts one of these."""
         return [self.file.variables[name] for name, counted in self._roles.items() if counted in roles]
 
-    def beside(self, variable: Variable, *roles: Role) -> list[Variable]:
+    def auxiliary(self, variable: Variable, *roles: Role) -> list[Variable]:
         """Coordinates along some of a variable's dimensions: those of their names, then those it names, then others."""
-        first = [*variable.dimensions, *_named(variable)]
+        first = [*variable.dimensions, *_named_coordinates(variable)]
         names = dict.fromkeys([name for name in first if self._roles.get(name) in roles])
         names |= dict.fromkeys(v.name for v in self.all(*roles))
         own = set(variable.dimensions)
         found = [self.file.variables[name] for name in names if name != variable.name]
         return [v for v in found if v.dimensions and own.issuperset(v.dimensions)]
 
-    def along(self, variable: Variable, dimension: str) -> Variable | None:
+    def coordinate_along(self, variable: Variable, dimension: str) -> Variable | None:
         """The coordinate along one dimension, None where nothing tells what it counts."""
         key = (variable.name, dimension)
         if key not in self._coordinates:
-            beside = self.beside(variable, *set(self._roles.values()))
+            beside = self.auxiliary(variable, *set(self._roles.values()))
             self._coordinates[key] = next((v for v in beside if v.dimensions == (dimension,)), None)
         return self._coordinates[key]
 
-    def alone(self, variable: Variable, *roles: Role) -> Variable | None:
+    def single_value(self, variable: Variable, *roles: Role) -> Variable | None:
         """A coordinate of one value: one that the variable names, otherwise the file's only one."""
         single = [v for v in self.all(*roles) if v.shape in ((), (1,))]
-        named = [v for v in single if v.name in _named(variable)]
+        named = [v for v in single if v.name in _named_coordinates(variable)]
         return named[0] if named else single[0] if len(single) == 1 else None
 
     def times(self, variable: Variable, meaning: Meaning) -> tuple[Coordinate | None, Coordinate | None]:
@@ -77,69 +77,74 @@ class Axes:
 
         Raises `WindError` for times that cannot be read, or runs and leads that do not fit together.
         """
-        along, run = self._beside_times(variable)
-        period = next(iter(self.beside(variable, "period")), None)
+        along, run = self._auxiliary_times(variable)
+        period = next(iter(self.auxiliary(variable, "period")), None)
         if along is not None and (period is None or set(period.dimensions) <= set(along.dimensions)):
-            return along, self._began(along, period) if run is None and period is not None else run
+            return along, self._runs_from_periods(along, period) if run is None and period is not None else run
         if period is not None or (run is not None and run.dimensions):
-            bases = (run if run is not None and run.dimensions else None, along, run, self._moment(variable, "time"))
+            bases = (
+                run if run is not None and run.dimensions else None,
+                along,
+                run,
+                self._single_time(variable, "time"),
+            )
             base = next((one for one in bases if one is not None), None)
-            lead = self._lead(variable) if period is None else self._periods(period)
+            lead = self._lead_time(variable) if period is None else self._decoded_periods(period)
             if base is None or lead is None:
                 what = "leads but not when the forecast began" if base is None else "when forecasts began but no leads"
                 raise WindError(f"it tells {what}, so that nobody knows when it holds: add a time")
             return _sum(base, lead), base
         if meaning.quantity in _STATIC:
             return None, None
-        held = self._moment(variable, "time")
-        if held is None and run is not None and (lead := self._lead(variable)) is not None:
+        valid = self._single_time(variable, "time")
+        if valid is None and run is not None and (lead := self._lead_time(variable)) is not None:
             return _sum(run, lead), run
-        return held, run
+        return valid, run
 
-    def _beside_times(self, variable: Variable) -> tuple[Coordinate | None, Coordinate | None]:
+    def _auxiliary_times(self, variable: Variable) -> tuple[Coordinate | None, Coordinate | None]:
         """Valid times along the variable's dimensions; runs along them, or one for all."""
-        times = self.beside(variable, "time")
+        times = self.auxiliary(variable, "time")
         valid = max(times, key=lambda v: (len(v.dimensions), v.name.startswith("valid")), default=None)
-        along = self._written(variable) if valid is None else self._moments(valid)
-        runs = self.beside(variable, "run")
-        run = self._moments(runs[0]) if runs else self._moment(variable, "run")
+        along = self._text_times(variable) if valid is None else self._decoded_times(valid)
+        runs = self.auxiliary(variable, "run")
+        run = self._decoded_times(runs[0]) if runs else self._single_time(variable, "run")
         if run is None and valid is not None and len(valid.dimensions) > 1:
             shorter = [v for v in times if set(v.dimensions) < set(valid.dimensions)]
-            run = self._moments(shorter[0]) if shorter else None
+            run = self._decoded_times(shorter[0]) if shorter else None
         return along, run
 
-    def _began(self, along: Coordinate, period: Variable) -> Coordinate | None:
+    def _runs_from_periods(self, along: Coordinate, period: Variable) -> Coordinate | None:
         """When the model began, by times and leads; None where the leads are in no known unit."""
         try:
-            return _sum(along, self._periods(period), -1.0)
+            return _sum(along, self._decoded_periods(period), -1.0)
         except WindError:
             return None
 
-    def _moments(self, variable: Variable) -> Coordinate:
+    def _decoded_times(self, variable: Variable) -> Coordinate:
         if variable.name not in self._decoded:
-            values = moments(variable, self._complete(variable))
+            values = moments(variable, self._all_values(variable))
             self._decoded[variable.name] = Coordinate(variable.dimensions, values)
         return self._decoded[variable.name]
 
-    def _periods(self, variable: Variable) -> Coordinate:
-        return Coordinate(variable.dimensions, spans(variable, self._complete(variable)))
+    def _decoded_periods(self, variable: Variable) -> Coordinate:
+        return Coordinate(variable.dimensions, spans(variable, self._all_values(variable)))
 
-    def _moment(self, variable: Variable, kind: Role) -> Coordinate | None:
-        found = self.alone(variable, kind)
-        return None if found is None else _scalar(self._moments(found))
+    def _single_time(self, variable: Variable, kind: Role) -> Coordinate | None:
+        found = self.single_value(variable, kind)
+        return None if found is None else _scalar(self._decoded_times(found))
 
-    def _lead(self, variable: Variable) -> Coordinate | None:
-        found = self.alone(variable, "period")
-        return None if found is None else _scalar(self._periods(found))
+    def _lead_time(self, variable: Variable) -> Coordinate | None:
+        found = self.single_value(variable, "period")
+        return None if found is None else _scalar(self._decoded_periods(found))
 
-    def _written(self, variable: Variable) -> Coordinate | None:
+    def _text_times(self, variable: Variable) -> Coordinate | None:
         """WRF's times, which are text."""
         times = self.file.variables.get("Times")
         if times is None or len(times.dimensions) != 2 or times.dimensions[0] not in variable.dimensions:
             return None
         return Coordinate(times.dimensions[:1], written(self.file.letters(times)))
 
-    def _complete(self, variable: Variable) -> FloatArray:
+    def _all_values(self, variable: Variable) -> FloatArray:
         values = self.file.values(variable)
         if not np.isfinite(values).all():
             raise WindError(f"its coordinate {variable.name} has missing values: fill it")
@@ -147,7 +152,7 @@ class Axes:
 
     def levels(self, variable: Variable, meaning: Meaning) -> Levels:
         """The levels of a variable. Raises `WindError` for several level axes, and units that are not known."""
-        axes = [(d, self.along(variable, d)) for d in variable.dimensions]
+        axes = [(d, self.coordinate_along(variable, d)) for d in variable.dimensions]
         vertical = [(d, axis) for d, axis in axes if axis is not None and self.role(axis) in LEVELS]
         long = [(d, axis) for d, axis in vertical if self.file.dimensions[d] > 1]
         if len(long) > 1 or (long and meaning.quantity in _ON_THE_SURFACE):
@@ -177,8 +182,8 @@ class Axes:
             )
 
     def _in_si(self, axis: Variable, kind: LevelKind) -> FloatArray:
-        unit = unit_of(axis.name, axis.told("units"), PRESSURE if kind == "pressure" else LENGTH)
-        return self._complete(axis).ravel() * unit
+        unit = unit_factor(axis.name, axis.raw_text("units"), PRESSURE if kind == "pressure" else LENGTH)
+        return self._all_values(axis).ravel() * unit
 
     def _level(self, variable: Variable, meaning: Meaning) -> Level:
         """The one level of a variable without an axis for it.
@@ -188,22 +193,22 @@ class Axes:
         """
         if meaning.level is not None:
             return meaning.level
-        named = [self.file.variables[name] for name in _named(variable) if name in self.file.variables]
+        named = [self.file.variables[name] for name in _named_coordinates(variable) if name in self.file.variables]
         single = [v for v in named if self.role(v) in LEVELS and v.shape in ((), (1,)) and "bounds" not in v.attributes]
         if len(single) == 1:
             kind = _level_kind(self.role(single[0]))
             if kind == "model":
-                return Level(kind, float(self._complete(single[0]).ravel()[0]))
+                return Level(kind, float(self._all_values(single[0]).ravel()[0]))
             if kind == "pressure" or meaning.guess is None:
                 return _rounded(kind, float(self._in_si(single[0], kind)[0]))
         if meaning.guess is not None:
             return meaning.guess
-        at_surface = variable.text("GRIB_typeOfLevel") == "surface" or "surface" in _named(variable)
+        at_surface = variable.text("GRIB_typeOfLevel") == "surface" or "surface" in _named_coordinates(variable)
         return SURFACE if at_surface else Level("unknown")
 
 
-def _named(variable: Variable) -> list[str]:
-    return variable.told("coordinates").split()
+def _named_coordinates(variable: Variable) -> list[str]:
+    return variable.raw_text("coordinates").split()
 
 
 def _level_kind(found: Role | None) -> LevelKind:

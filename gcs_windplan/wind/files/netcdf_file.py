@@ -19,7 +19,7 @@ from gcs_windplan.wind.files.cf import Variable
 Places: TypeAlias = tuple[str, IntArray]
 
 _BLOCK = 4_000_000  # numbers that are read at once at most
-_KEPT = 256_000_000  # [bytes] that are kept for the next sheets
+_KEPT = 256_000_000  # [bytes] that are kept for the next fields
 
 #: Single precision is kept as it is.
 _Block: TypeAlias = npt.NDArray[np.floating[Any]]
@@ -45,7 +45,7 @@ class NetcdfFile:
     """An open dataset.
 
     Compressed files are cut in chunks that can only be read whole, and one often holds many times and levels. So what
-    is read for one sheet is read for all sheets that share its chunks, and the last such blocks are kept.
+    is read for one field is read for all fields that share its chunks, and the last such blocks are kept.
     """
 
     def __init__(self, dataset: Any) -> None:
@@ -56,7 +56,7 @@ class NetcdfFile:
             for name, v in dataset.variables.items()
         }
         self.groups: tuple[str, ...] = tuple(dataset.groups)
-        self.title = Variable("", (), (), _attributes(dataset)).told("title")[:80]
+        self.title = Variable("", (), (), _attributes(dataset)).raw_text("title")[:80]
         self._values: dict[str, FloatArray] = {}
         self._blocks: OrderedDict[tuple[object, ...], _Block] = OrderedDict()
 

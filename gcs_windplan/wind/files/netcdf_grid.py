@@ -8,16 +8,16 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import Grid
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_axes import Role
 from gcs_windplan.wind.files.netcdf_axes import Axes
 from gcs_windplan.wind.files.projection import unprojected
 from gcs_windplan.wind.files.units import ANGLE, compact
-from gcs_windplan.wind.sheets import Grid
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Layout:
+class NetcdfLayout:
     """A grid and the dimensions of its rows and columns; None where there is one row or column without a dimension."""
 
     grid: Grid
@@ -25,16 +25,16 @@ class Layout:
     columns: str | None
 
 
-class Layouts:
+class NetcdfLayouts:
     """The grids of a file: variables on the same coordinates share one."""
 
     def __init__(self, axes: Axes) -> None:
         self._axes = axes
         self._file = axes.file
         self._regulars: dict[tuple[str, str], Grid] = {}
-        self._known: dict[tuple[str, ...], Layout] = {}
+        self._known: dict[tuple[str, ...], NetcdfLayout] = {}
 
-    def of(self, variable: Variable) -> Layout:
+    def of(self, variable: Variable) -> NetcdfLayout:
         """Where a variable's values stand.
 
         Raises `WindError`, that says what to do, for staggered and unstructured grids, and for places that the file
@@ -46,48 +46,50 @@ class Layouts:
                 f"they stand between the nodes, on a staggered grid ({', '.join(staggered)}): bring them to its centres"
                 " first, for example with wrf-python's `destagger`"
             )
-        latitudes = self._axes.beside(variable, "latitude")
-        longitudes = self._axes.beside(variable, "longitude")
+        latitudes = self._axes.auxiliary(variable, "latitude")
+        longitudes = self._axes.auxiliary(variable, "longitude")
         return (
             self._regular(variable, latitudes, longitudes)
-            or self._curved(*(self._meshes(variable, role) for role in ("latitude", "longitude")))
+            or self._curved(*(self._node_coordinates(variable, role) for role in ("latitude", "longitude")))
             or self._projected(variable)
             or self._point(variable)
-            or self._nowhere(variable, latitudes, longitudes)
+            or self._refuse(variable, latitudes, longitudes)
         )
 
-    def _regular(self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]) -> Layout | None:
+    def _regular(
+        self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]
+    ) -> NetcdfLayout | None:
         """Rows are parallels, columns meridians; one of both may be a single one."""
         rows = next((v for v in latitudes if len(v.dimensions) == 1), None)
         columns = next((v for v in longitudes if len(v.dimensions) == 1), None)
         if rows is None and columns is not None and not latitudes:
-            rows = self._axes.alone(variable, "latitude")
+            rows = self._axes.single_value(variable, "latitude")
         elif columns is None and rows is not None and not longitudes:
-            columns = self._axes.alone(variable, "longitude")
+            columns = self._axes.single_value(variable, "longitude")
         if rows is None or columns is None or rows.dimensions == columns.dimensions:
             return None
-        return self._laid_out(variable, rows, columns)
+        return self._layout_on(variable, rows, columns)
 
-    def _point(self, variable: Variable) -> Layout | None:
-        rows, columns = self._axes.alone(variable, "latitude"), self._axes.alone(variable, "longitude")
-        return None if rows is None or columns is None else self._laid_out(variable, rows, columns)
+    def _point(self, variable: Variable) -> NetcdfLayout | None:
+        rows, columns = self._axes.single_value(variable, "latitude"), self._axes.single_value(variable, "longitude")
+        return None if rows is None or columns is None else self._layout_on(variable, rows, columns)
 
-    def _laid_out(self, variable: Variable, rows: Variable, columns: Variable) -> Layout:
+    def _layout_on(self, variable: Variable, rows: Variable, columns: Variable) -> NetcdfLayout:
         key = (rows.name, columns.name)
         if key not in self._regulars:
             latitudes, longitudes = (self._degrees(v).ravel() for v in (rows, columns))
             name = f"{len(latitudes)} latitudes x {len(longitudes)} longitudes"
             self._regulars[key] = Grid(latitudes, longitudes, name)
         along = (next((d for d in v.dimensions if d in variable.dimensions), None) for v in (rows, columns))
-        return Layout(self._regulars[key], *along)
+        return NetcdfLayout(self._regulars[key], *along)
 
-    def _meshes(self, variable: Variable, role: Role) -> list[Variable]:
+    def _node_coordinates(self, variable: Variable, role: Role) -> list[Variable]:
         """Latitudes or longitudes of each node; WRF repeats them for every time, which a terrain may lack."""
-        beside = [v for v in self._axes.beside(variable, role) if len(v.dimensions) > 1]
+        beside = [v for v in self._axes.auxiliary(variable, role) if len(v.dimensions) > 1]
         repeated = [v for v in self._axes.all(role) if len(v.dimensions) > 2]
         return beside + [v for v in repeated if set(v.dimensions[-2:]) <= set(variable.dimensions)]
 
-    def _curved(self, latitudes: list[Variable], longitudes: list[Variable]) -> Layout | None:
+    def _curved(self, latitudes: list[Variable], longitudes: list[Variable]) -> NetcdfLayout | None:
         """Each node has its own latitude and longitude."""
         pairs = [(a, b) for a in latitudes for b in longitudes if a.dimensions == b.dimensions]
         if not pairs:
@@ -100,7 +102,7 @@ class Layouts:
             self._known[key] = found
         return self._known[key]
 
-    def _nodes(self, latitude: Variable, longitude: Variable) -> Layout | None:
+    def _nodes(self, latitude: Variable, longitude: Variable) -> NetcdfLayout | None:
         """None where nodes are missing, which a projection may help out with. Raises `WindError` for moving nests."""
         values = [self._degrees(v) for v in (latitude, longitude)]
         for array in values:
@@ -116,9 +118,9 @@ class Layouts:
         if (latitudes == latitudes[:, :1]).all() and (longitudes == longitudes[:1]).all():
             latitudes, longitudes = latitudes[:, 0], longitudes[0]
         name = f"{latitude.name}, {longitude.name} on {rows}, {columns}"
-        return Layout(Grid(latitudes, longitudes, name, self._runs_back(columns)), rows, columns)
+        return NetcdfLayout(Grid(latitudes, longitudes, name, self._descends(columns)), rows, columns)
 
-    def _runs_back(self, dimension: str) -> bool:
+    def _descends(self, dimension: str) -> bool:
         """Whether the numbers along a dimension descend."""
         axis = self._file.variables.get(dimension)
         if axis is None or axis.dimensions != (dimension,):
@@ -136,10 +138,10 @@ class Layouts:
             said is None and dimension.lower() in ("x", "lon", "longitude", "west_east")
         )
 
-    def _projected(self, variable: Variable) -> Layout | None:
+    def _projected(self, variable: Variable) -> NetcdfLayout | None:
         """The nodes by the grid mapping."""
         ys, xs = (
-            [v for v in self._axes.beside(variable, role) if len(v.dimensions) == 1] for role in ("y", "x")
+            [v for v in self._axes.auxiliary(variable, role) if len(v.dimensions) == 1] for role in ("y", "x")
         )  # fmt: skip
         if not xs or not ys or xs[0].dimensions == ys[0].dimensions:
             return None
@@ -152,21 +154,21 @@ class Layouts:
         key = (ys[0].name, xs[0].name, mapping.name)
         if key not in self._known:
             x, y = (self._file.values(axis).ravel() for axis in (xs[0], ys[0]))
-            nodes = unprojected(x, y, mapping, (xs[0].told("units"), ys[0].told("units")))
+            nodes = unprojected(x, y, mapping, (xs[0].raw_text("units"), ys[0].raw_text("units")))
             grid = Grid(*nodes, mapping.text("grid_mapping_name"), backwards=bool(x[-1] < x[0]))
-            self._known[key] = Layout(grid, ys[0].dimensions[0], xs[0].dimensions[0])
+            self._known[key] = NetcdfLayout(grid, ys[0].dimensions[0], xs[0].dimensions[0])
         return self._known[key]
 
     def _mapping(self, variable: Variable) -> Variable | None:
         """The variable's grid mapping, or the file's only one."""
-        names = [name.rstrip(":") for name in variable.told("grid_mapping").split()]
+        names = [name.rstrip(":") for name in variable.raw_text("grid_mapping").split()]
         for name in names:
             if name in self._file.variables:
                 return self._file.variables[name]
         every = [v for v in self._file.variables.values() if v.text("grid_mapping_name")]
         return every[0] if len(every) == 1 else None
 
-    def _nowhere(self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]) -> Layout:
+    def _refuse(self, variable: Variable, latitudes: list[Variable], longitudes: list[Variable]) -> NetcdfLayout:
         shared = {v.dimensions for v in latitudes} & {v.dimensions for v in longitudes}
         along = next((dimensions for dimensions in shared if len(dimensions) == 1), None)
         if along is not None:
@@ -182,4 +184,4 @@ class Layouts:
         )
 
     def _degrees(self, axis: Variable) -> FloatArray:
-        return self._file.values(axis) * ANGLE.sizes.get(compact(axis.told("units")), 1.0)
+        return self._file.values(axis) * ANGLE.factors.get(compact(axis.raw_text("units")), 1.0)

@@ -20,8 +20,8 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import SURFACE, Field2D, FieldIndex, Grid, Level, Quantity
 from gcs_windplan.wind.files.units import converted
-from gcs_windplan.wind.sheets import SURFACE, Catalogue, Grid, Level, Quantity, Sheet
 
 _NAME = re.compile(
     r"(?P<what>wind_?speed|wind_?direction|wind_?gusts|wind_[uv]_component|geopotential_height)"
@@ -64,20 +64,20 @@ class _Point:
 
 
 @contextmanager
-def open_openmeteo(path: Path) -> Iterator[Catalogue]:
-    """The sheets of an answer, or of a list of answers for places that form a lattice of latitudes and longitudes.
+def open_openmeteo(path: Path) -> Iterator[FieldIndex]:
+    """The fields of an answer, or of a list of answers for places that form a lattice of latitudes and longitudes.
 
     Raises `WindError` that begins with the path: for a file that is no such answer, or that tells an error; for series
     without units or of different lengths; for speed without a direction at all heights; for places in no lattice.
     """
     try:
-        catalogue = _catalogue(path)
+        index = _index(path)
     except WindError as error:
-        raise WindError(f"{path}: {error}") from error
-    yield catalogue
+        raise error.in_files([path]) from error
+    yield index
 
 
-def _catalogue(path: Path) -> Catalogue:
+def _index(path: Path) -> FieldIndex:
     answers = _loaded(path)
     points = [_point(answer) for answer in (answers if isinstance(answers, list) else [answers])]
     if not points:
@@ -88,8 +88,8 @@ def _catalogue(path: Path) -> Catalogue:
             raise WindError("its places have different times: ask for all of them at once, in UTC")
     grid, numbers = _lattice(points)
     missing = np.full(len(first.times), np.nan)
-    sheets = [
-        Sheet(
+    fields = [
+        Field2D(
             quantity=series.quantity,
             level=series.level,
             grid=grid,
@@ -105,9 +105,9 @@ def _catalogue(path: Path) -> Catalogue:
     ]
     elevations = np.array([point.elevation for point in points])[numbers]
     if np.isfinite(elevations).any():
-        sheets.append(Sheet("terrain", SURFACE, grid, partial(_cut, elevations), "elevation", "m"))
+        fields.append(Field2D("terrain", SURFACE, grid, partial(_cut, elevations), "elevation", "m"))
     unused = dict.fromkeys(note for point in points for note in point.unused)
-    return Catalogue(path.name, tuple(sheets), "Open-Meteo", tuple(unused))
+    return FieldIndex(path.name, tuple(fields), "Open-Meteo", tuple(unused), "JSON")
 
 
 def _loaded(path: Path) -> Any:
@@ -201,10 +201,10 @@ def _all_series(
         member = int(match["member"] or 0) if ensemble else None
         series = _Series(quantity, _level(match), member, name, unit)
         found[series] = converted(values, quantity, name, unit)
-    said = [f"{', '.join(empty)}: without any value"] if empty else []
+    notes = [f"{', '.join(empty)}: without any value"] if empty else []
     if models:
-        said.append(f"fields of several models ({', '.join(sorted(models))}): ask for one model")
-    return found, said
+        notes.append(f"fields of several models ({', '.join(sorted(models))}): ask for one model")
+    return found, notes
 
 
 def _level(match: re.Match[str]) -> Level:

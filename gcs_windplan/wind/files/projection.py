@@ -13,7 +13,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.files.cf import Variable
-from gcs_windplan.wind.files.units import ANGLE, LENGTH, unit_of
+from gcs_windplan.wind.files.units import ANGLE, LENGTH, unit_factor
 
 _EARTH = 6371229.0  # [m] where the file does not tell: WMO-No. 306, volume I.2, code table 3.2, entry 6
 _ELLIPSOIDS = {"wgs 84": "WGS84", "wgs84": "WGS84", "grs 1980": "GRS80", "grs80": "GRS80"}
@@ -33,10 +33,10 @@ def unprojected(
             f"its grid mapping {mapping.name} is {name or 'of no name'!r}; known are {', '.join(sorted(_PROJECTIONS))}:"
             " add latitudes and longitudes of all nodes, or regrid it"
         )
-    measure = ANGLE if name == "rotated_latitude_longitude" else LENGTH
-    across, along = (unit_of(axis, unit, measure) for axis, unit in zip(("x", "y"), units, strict=True))
+    table = ANGLE if name == "rotated_latitude_longitude" else LENGTH
+    across, along = (unit_factor(axis, unit, table) for axis, unit in zip(("x", "y"), units, strict=True))
     earth = _earth(mapping)
-    origin = "" if measure is ANGLE else _false_origin(mapping, across, along)
+    origin = "" if table is ANGLE else _false_origin(mapping, across, along)
     projection = f"{_PROJECTIONS[name](mapping)} {origin} {earth} +no_defs"
     try:
         latitudes, longitudes = _transformed(projection, f"+proj=longlat {earth} +no_defs", x * across, y * along)

@@ -14,8 +14,8 @@ from types import ModuleType
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.wind.files.anyfile import open_catalogue
-from gcs_windplan.wind.sheets import Catalogue
+from gcs_windplan.wind.field_index import FieldIndex
+from gcs_windplan.wind.files.anyfile import open_index
 from tests.wind.netcdf_maker import AXES, wind, write_netcdf
 
 ANSWER = {
@@ -27,7 +27,7 @@ ANSWER = {
 
 def _say(path: Path) -> str:
     with pytest.raises(WindError) as error:
-        open_catalogue(path)
+        open_index(path)
     assert str(error.value).startswith(f"{path}: ")
     assert "NetCDF, GRIB and answers of Open-Meteo (JSON) are read" in str(error.value)
     return str(error.value)
@@ -41,12 +41,12 @@ def path(tmp_path: Path) -> Path:
 def test_netcdf_of_both_kinds(path: Path) -> None:
     write_netcdf(path, {**AXES, "u10": wind("lat lon", 3, 4)})
     assert path.read_bytes()[:4] == b"\x89HDF"
-    with open_catalogue(path) as catalogue:
-        assert [sheet.name for sheet in catalogue.sheets] == ["u10"]
+    with open_index(path) as index:
+        assert [field2d.name for field2d in index.fields] == ["u10"]
     write_netcdf(path, {**AXES, "v10": wind("lat lon", 3, 4)}, format="NETCDF3_CLASSIC")
     assert path.read_bytes()[:3] == b"CDF"
-    with open_catalogue(path) as catalogue:
-        assert [sheet.name for sheet in catalogue.sheets] == ["v10"]
+    with open_index(path) as index:
+        assert [field2d.name for field2d in index.fields] == ["v10"]
 
 
 @pytest.mark.parametrize("lead", [b"", b"\xef\xbb\xbf", b"\n  "])
@@ -54,25 +54,25 @@ def test_answers_of_open_meteo(path: Path, lead: bytes) -> None:
     """One place or a list of them; the word GRIB inside makes them no GRIB."""
     for answer in (ANSWER, [ANSWER]):
         path.write_bytes(lead + json.dumps(answer).replace("{", '{"from": "GRIB", ', 1).encode())
-        with open_catalogue(path) as catalogue:
-            assert {sheet.quantity for sheet in catalogue.sheets} == {"speed", "direction"}
+        with open_index(path) as index:
+            assert {field2d.quantity for field2d in index.fields} == {"speed", "direction"}
     path.write_text(json.dumps(ANSWER), encoding="utf-16")
-    with open_catalogue(path) as catalogue:
-        assert catalogue.title == "Open-Meteo"
+    with open_index(path) as index:
+        assert index.title == "Open-Meteo"
 
 
 @pytest.mark.parametrize("lead", [b"", b"\r\r\n001\r\r\nHTXX12 ECMF 011200\r\r\n", b"\0" * 990])
 def test_grib_may_have_a_header_of_the_message_switch(path: Path, lead: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     @contextmanager
-    def open_grib(path: Path) -> Iterator[Catalogue]:
-        yield Catalogue("a GRIB file", ())
+    def open_grib(path: Path) -> Iterator[FieldIndex]:
+        yield FieldIndex("a GRIB file", ())
 
     stand_in = ModuleType("gcs_windplan.wind.files.grib")
     stand_in.open_grib = open_grib  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "gcs_windplan.wind.files.grib", stand_in)
     path.write_bytes(lead + b"GRIB" + bytes(100))
-    with open_catalogue(path) as catalogue:
-        assert catalogue.source == "a GRIB file"
+    with open_index(path) as index:
+        assert index.source == "a GRIB file"
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_grib_may_have_a_header_of_the_message_switch(path: Path, lead: bytes, m
         (b"latitude,longitude,wind\n", "is of no format that is known here"),
         (b"\x7fELF", "is of no format that is known here"),
         (bytes([7]) * 1100 + b"GRIB", "is of no format that is known here"),
-        (gzip.compress(b"CDF"), "is packed with gzip: unpack it first (`gunzip`)"),
+        (gzip.compress(b"CDF", mtime=0), "is packed with gzip: unpack it first (`gunzip`)"),
         (b"BZh91AY", "is packed with bzip2: unpack it first (`bunzip2`)"),
         (b"PK\x03\x04data.nc", "is packed with zip: unpack it first (`unzip`)"),
         (b"\xfd7zXZ\0", "is packed with xz"),
@@ -109,8 +109,8 @@ def test_a_reader_is_imported_only_when_it_is_needed(tmp_path: Path) -> None:
     answer.write_text(json.dumps(ANSWER))
     netcdf = write_netcdf(tmp_path / "wind.nc", {**AXES, "u10": wind("lat lon", 3, 4)})
     code = (
-        "import sys; from pathlib import Path; from gcs_windplan.wind.files.anyfile import open_catalogue\n"
-        "with open_catalogue(Path(sys.argv[1])): print(*sorted({'netCDF4', 'eccodes', 'rasterio'} & set(sys.modules)))"
+        "import sys; from pathlib import Path; from gcs_windplan.wind.files.anyfile import open_index\n"
+        "with open_index(Path(sys.argv[1])): print(*sorted({'netCDF4', 'eccodes', 'rasterio'} & set(sys.modules)))"
     )
     for path, imported in ((answer, ""), (netcdf, "netCDF4")):
         done = run([sys.executable, "-c", code, str(path)], capture_output=True, check=True, text=True)

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from gcs_windplan.wind.field_index import SURFACE, Level
 from gcs_windplan.wind.files.cf import Variable
 from gcs_windplan.wind.files.cf_names import looks_like_wind, meaning
-from gcs_windplan.wind.sheets import SURFACE, Level
 
 
 def _variable(name: str, **attributes: Any) -> Variable:

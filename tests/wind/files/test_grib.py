@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import Field2D, FieldIndex, Level
 from gcs_windplan.wind.files.grib import open_grib
-from gcs_windplan.wind.sheets import Catalogue, Level, Sheet
 from tests.wind.grib_files import box, in_one_message, message, stored
 
 ONE_CM_PER_SECOND = 0.01
@@ -29,7 +29,7 @@ DATA = Path(__file__).resolve().parents[3].parent / "shared" / "data" / "wind"
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC).timestamp()
 HALF_LEVELS = [0.0, 2000.0, 4000.0, 0.0, 0.0, 0.1, 0.6, 1.0]  # a [Pa], then b
 
-Opened = Callable[..., Catalogue]
+Opened = Callable[..., FieldIndex]
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def opened(tmp_path: Path) -> Any:
     """Writes messages to a file and opens it until the test ends."""
     contexts = []
 
-    def write_and_open(*messages: bytes) -> Catalogue:
+    def write_and_open(*messages: bytes) -> FieldIndex:
         path = tmp_path / f"wind{len(contexts)}.grib"
         path.write_bytes(b"".join(messages))
         contexts.append(open_grib(path))
@@ -59,18 +59,18 @@ def _numbers(parameter: int, category: int = 2) -> dict[str, int]:
     return {"discipline": 0, "parameterCategory": category, "parameterNumber": parameter}
 
 
-def _whole(sheet: Sheet) -> FloatArray:
-    rows, columns = sheet.grid.shape
-    return sheet.read(np.arange(rows), np.arange(columns))
+def _whole(field2d: Field2D) -> FloatArray:
+    rows, columns = field2d.grid.shape
+    return field2d.read(np.arange(rows), np.arange(columns))
 
 
-def _only(catalogue: Catalogue) -> Sheet:
-    (sheet,) = catalogue.sheets
-    return sheet
+def _only(index: FieldIndex) -> Field2D:
+    (field2d,) = index.fields
+    return field2d
 
 
-def _levels(catalogue: Catalogue) -> list[tuple[str, Level]]:
-    return [(sheet.quantity, sheet.level) for sheet in catalogue.sheets]
+def _levels(index: FieldIndex) -> list[tuple[str, Level]]:
+    return [(field2d.quantity, field2d.level) for field2d in index.fields]
 
 
 def _say(path: Path) -> str:
@@ -80,9 +80,9 @@ def _say(path: Path) -> str:
     return str(error.value)
 
 
-def _places(sheet: Sheet) -> tuple[FloatArray, FloatArray]:
+def _places(field2d: Field2D) -> tuple[FloatArray, FloatArray]:
     """Latitudes and longitudes of all nodes."""
-    grid = sheet.grid
+    grid = field2d.grid
     if grid.regular:
         return np.broadcast_arrays(grid.latitudes[:, np.newaxis], grid.longitudes)
     return grid.latitudes, grid.longitudes
@@ -102,18 +102,18 @@ def _places(sheet: Sheet) -> tuple[FloatArray, FloatArray]:
 )
 def test_ten_values_of_a_real_file_are_those_that_eccodes_finds_nearest(name: str) -> None:
     path, random = _real(name), np.random.default_rng(10)
-    with open_grib(path) as catalogue:
-        for number in random.choice(len(catalogue.sheets), 10):
-            sheet = catalogue.sheets[number]
-            row, column = (int(random.integers(size)) for size in sheet.grid.shape)
-            value = sheet.read(np.array([row]), np.array([column]))[0, 0]
-            expected = _found_by_eccodes(path, sheet, sheet.grid.latitudes[row], sheet.grid.longitudes[column])
+    with open_grib(path) as index:
+        for number in random.choice(len(index.fields), 10):
+            field2d = index.fields[number]
+            row, column = (int(random.integers(size)) for size in field2d.grid.shape)
+            value = field2d.read(np.array([row]), np.array([column]))[0, 0]
+            expected = _found_by_eccodes(path, field2d, field2d.grid.latitudes[row], field2d.grid.longitudes[column])
             assert value == pytest.approx(expected, abs=ONE_CM_PER_SECOND)
 
 
-def _found_by_eccodes(path: Path, sheet: Sheet, latitude: float, longitude: float) -> float:
-    """The value at a node of the message that holds a sheet."""
-    wanted = (sheet.name, sheet.level.value / 100, sheet.time, sheet.run, sheet.member or 0)
+def _found_by_eccodes(path: Path, field2d: Field2D, latitude: float, longitude: float) -> float:
+    """The value at a node of the message that holds a field."""
+    wanted = (field2d.name, field2d.level.value / 100, field2d.time, field2d.run, field2d.member or 0)
     with path.open("rb") as file:
         while (handle := eccodes.codes_grib_new_from_file(file)) is not None:
             try:
@@ -122,7 +122,7 @@ def _found_by_eccodes(path: Path, sheet: Sheet, latitude: float, longitude: floa
                 if (get(handle, "shortName"), get(handle, "level"), *times, get(handle, "number")) == wanted:
                     (near,) = eccodes.codes_grib_find_nearest(handle, latitude, longitude)
                     assert near.distance < 0.1
-                    return float(near.value) / (9.80665 if sheet.name == "z" else 1.0)
+                    return float(near.value) / (9.80665 if field2d.name == "z" else 1.0)
             finally:
                 eccodes.codes_release(handle)
     raise AssertionError(f"no message is {wanted}")
@@ -134,18 +134,18 @@ def _seconds(date: int, time: int) -> float:
 
 
 def test_the_real_ensemble_has_its_members_and_all_fields_share_one_grid() -> None:
-    with open_grib(_real("ecmwf_ens_ztu_multi_dim.grib")) as catalogue:
-        assert {sheet.member for sheet in catalogue.sheets} == {1, 2, 3, 4, 5, 6}
-        assert Counter(sheet.quantity for sheet in catalogue.sheets) == {"height": 96, "u": 96}
-        assert len({id(sheet.grid) for sheet in catalogue.sheets}) == 1
-        assert catalogue.title.startswith("European Centre")
+    with open_grib(_real("ecmwf_ens_ztu_multi_dim.grib")) as index:
+        assert {field2d.member for field2d in index.fields} == {1, 2, 3, 4, 5, 6}
+        assert Counter(field2d.quantity for field2d in index.fields) == {"height": 96, "u": 96}
+        assert len({id(field2d.grid) for field2d in index.fields}) == 1
+        assert index.title.startswith("European Centre")
 
 
 def test_a_real_deterministic_forecast_has_no_members_and_all_its_runs() -> None:
-    with open_grib(_real("ecmwf_pl_regular_ll_10deg.grib")) as catalogue:
-        assert {sheet.member for sheet in catalogue.sheets} == {None}
-        assert len({sheet.run for sheet in catalogue.sheets}) == 4
-        assert {sheet.time - sheet.run for sheet in catalogue.sheets} == {0.0, 6 * 3600.0}
+    with open_grib(_real("ecmwf_pl_regular_ll_10deg.grib")) as index:
+        assert {field2d.member for field2d in index.fields} == {None}
+        assert len({field2d.run for field2d in index.fields}) == 4
+        assert {field2d.time - field2d.run for field2d in index.fields} == {0.0, 6 * 3600.0}
 
 
 # ---------------------------------------------------------------------------------------------- what and where
@@ -153,13 +153,13 @@ def test_a_real_deterministic_forecast_has_no_members_and_all_its_runs() -> None
 
 @pytest.mark.parametrize("edition", [1, 2])
 def test_wind_on_a_pressure_level(opened: Opened, edition: int) -> None:
-    sheet = _only(opened(message("u", 5.0, edition)))
-    assert (sheet.quantity, sheet.level, sheet.name) == ("u", Level("pressure", 85000.0), "u")
-    assert (sheet.units, sheet.member, sheet.along_grid, sheet.half_levels) == ("m s**-1", None, False, None)
-    assert sheet.grid.name == "latitude-longitude grid, 3 x 4"
-    np.testing.assert_array_equal(sheet.grid.latitudes, [50, 51, 52])
-    np.testing.assert_array_equal(sheet.grid.longitudes, [8, 9, 10, 11])
-    np.testing.assert_allclose(_whole(sheet), np.full((3, 4), 5.0))
+    field2d = _only(opened(message("u", 5.0, edition)))
+    assert (field2d.quantity, field2d.level, field2d.name) == ("u", Level("pressure", 85000.0), "u")
+    assert (field2d.units, field2d.member, field2d.along_grid, field2d.half_levels) == ("m s**-1", None, False, None)
+    assert field2d.grid.name == "latitude-longitude grid, 3 x 4"
+    np.testing.assert_array_equal(field2d.grid.latitudes, [50, 51, 52])
+    np.testing.assert_array_equal(field2d.grid.longitudes, [8, 9, 10, 11])
+    np.testing.assert_allclose(_whole(field2d), np.full((3, 4), 5.0))
 
 
 @pytest.mark.parametrize(
@@ -175,8 +175,8 @@ def test_a_name_with_a_height_is_at_that_height(
     opened: Opened, name: str, edition: int, quantity: str, height: float
 ) -> None:
     """Edition 1 of ECMWF says "surface", level 0, to all of them."""
-    catalogue = opened(message(name, edition=edition, typeOfLevel="surface", level=0))
-    assert _levels(catalogue) == [(quantity, Level("height", height))]
+    index = opened(message(name, edition=edition, typeOfLevel="surface", level=0))
+    assert _levels(index) == [(quantity, Level("height", height))]
 
 
 @pytest.mark.parametrize(
@@ -199,8 +199,8 @@ def test_a_name_with_a_height_is_at_that_height(
     ],
 )
 def test_kinds_of_levels(opened: Opened, edition: int, kind: str, level: int, expected: Level) -> None:
-    catalogue = opened(message("u", edition=edition, typeOfLevel=kind, level=level))
-    assert _levels(catalogue) == [("u", expected)]
+    index = opened(message("u", edition=edition, typeOfLevel=kind, level=level))
+    assert _levels(index) == [("u", expected)]
 
 
 @pytest.mark.parametrize(
@@ -235,16 +235,16 @@ def test_a_layer_between_two_general_vertical_surfaces_is_a_model_level_and_one_
 
 @pytest.mark.parametrize("kind", ["tropopause", "maxWind", "theta", "heightAboveGroundLayer"])
 def test_wind_at_no_known_height_is_counted(opened: Opened, kind: str) -> None:
-    catalogue = opened(message("u", typeOfLevel=kind), message("v", typeOfLevel=kind), message("t", typeOfLevel=kind))
-    assert catalogue.sheets == ()
-    assert catalogue.unused == (f"2 fields of wind at no known height ({kind}): not used",)
+    index = opened(message("u", typeOfLevel=kind), message("v", typeOfLevel=kind), message("t", typeOfLevel=kind))
+    assert index.fields == ()
+    assert index.unused == (f"2 fields of wind at no known height ({kind}): not used",)
 
 
 @pytest.mark.parametrize("edition", [1, 2])
 def test_quantities_beside_the_wind_and_their_units(opened: Opened, edition: int) -> None:
     ground = {"edition": edition, "typeOfLevel": "surface", "level": 0}
     aloft = {"edition": edition, "typeOfLevel": "hybrid", "level": 90}
-    catalogue = opened(
+    index = opened(
         message("z", 9806.65, edition),
         message("gh", 1000.0, edition),
         message("z", 980.665, **ground),
@@ -265,11 +265,11 @@ def test_quantities_beside_the_wind_and_their_units(opened: Opened, edition: int
         ("temperature", Level("model", 90), 280.0), ("humidity", Level("model", 90), 0.01),
         ("pressure", Level("surface"), 1e5),
     ]  # fmt: skip
-    assert [(q, level) for q, level, _ in expected] == _levels(catalogue)
-    for sheet, (_, _, value) in zip(catalogue.sheets, expected, strict=True):
-        np.testing.assert_allclose(_whole(sheet), value, rtol=1e-5)
-    assert [sheet.time for sheet in catalogue.sheets if sheet.quantity == "terrain"] == [None, None]
-    assert catalogue.unused == ()
+    assert [(q, level) for q, level, _ in expected] == _levels(index)
+    for field2d, (_, _, value) in zip(index.fields, expected, strict=True):
+        np.testing.assert_allclose(_whole(field2d), value, rtol=1e-5)
+    assert [field2d.time for field2d in index.fields if field2d.quantity == "terrain"] == [None, None]
+    assert index.unused == ()
 
 
 def test_a_geopotential_on_model_level_1_alone_is_the_terrain(opened: Opened) -> None:
@@ -288,20 +288,20 @@ def test_names_of_deutscher_wetterdienst_are_known(opened: Opened) -> None:
         message("", value, centre=78, typeOfLevel="surface", **_numbers(number, 3))
         for number, value in ((4, 980.665), (6, 100.0))
     ]
-    catalogue = opened(*fields, *ground)
+    index = opened(*fields, *ground)
     ten = Level("height", 10)
-    assert _levels(catalogue) == [
+    assert _levels(index) == [
         ("direction", ten), ("speed", ten), ("u", ten), ("v", ten),
         ("terrain", Level("surface")), ("terrain", Level("surface")),
     ]  # fmt: skip
-    for sheet in catalogue.sheets[-2:]:
-        np.testing.assert_allclose(_whole(sheet), 100.0, rtol=1e-6)
+    for field2d in index.fields[-2:]:
+        np.testing.assert_allclose(_whole(field2d), 100.0, rtol=1e-6)
 
 
 @pytest.mark.parametrize("edition", [1, 2])
 def test_half_levels_come_from_the_coefficients(opened: Opened, edition: int) -> None:
     one, two = (message("u", edition=edition, typeOfLevel="hybrid", level=level, pv=HALF_LEVELS) for level in (1, 2))
-    first, second = opened(one, two).sheets
+    first, second = opened(one, two).fields
     assert first.half_levels is not None
     np.testing.assert_allclose(first.half_levels[0], HALF_LEVELS[:4], rtol=1e-6)
     np.testing.assert_allclose(first.half_levels[1], HALF_LEVELS[4:], rtol=1e-6)
@@ -327,8 +327,8 @@ def test_times_agree_with_those_of_eccodes(opened: Opened, edition: int, unit: i
     handle = eccodes.codes_new_from_message(field)
     moment = _seconds(*(eccodes.codes_get_long(handle, key) for key in ("validityDate", "validityTime")))
     eccodes.codes_release(handle)
-    sheet = _only(opened(field))
-    assert (sheet.time, sheet.run) == (moment, _seconds(20240228, 2330))
+    field2d = _only(opened(field))
+    assert (field2d.time, field2d.run) == (moment, _seconds(20240228, 2330))
 
 
 def test_steps_of_edition_1_beyond_255_hours(opened: Opened) -> None:
@@ -344,9 +344,9 @@ def test_steps_may_go_back(opened: Opened) -> None:
 
 
 def test_months_are_counted_and_not_used(opened: Opened) -> None:
-    catalogue = opened(message("u", indicatorOfUnitOfTimeRange=3, forecastTime=1))
-    assert catalogue.sheets == ()
-    assert "1 field without a time that can be read" in catalogue.unused[0]
+    index = opened(message("u", indicatorOfUnitOfTimeRange=3, forecastTime=1))
+    assert index.fields == ()
+    assert "1 field without a time that can be read" in index.unused[0]
 
 
 @pytest.mark.parametrize(("edition", "process", "keys"), [
@@ -365,8 +365,8 @@ def test_a_gust_is_the_strongest_up_to_its_time(opened: Opened, edition: int, ce
     keys = {"stepType": "max"} if edition == 1 else {**_numbers(22), "productDefinitionTemplateNumber": 8}
     if edition == 2:
         keys |= {"typeOfLevel": "heightAboveGround", "level": 10, "typeOfStatisticalProcessing": 2}
-    sheet = _only(opened(message(name, 20.0, edition, centre=centre, **keys, stepRange="3-6")))
-    assert (sheet.quantity, sheet.time) == ("gust", NOON + 6 * 3600)
+    field2d = _only(opened(message(name, 20.0, edition, centre=centre, **keys, stepRange="3-6")))
+    assert (field2d.quantity, field2d.time) == ("gust", NOON + 6 * 3600)
 
 
 def test_a_mean_gust_is_no_gust(opened: Opened) -> None:
@@ -376,7 +376,7 @@ def test_a_mean_gust_is_no_gust(opened: Opened) -> None:
 
 @pytest.mark.parametrize("edition", [1, 2])
 def test_members_of_an_ensemble_are_numbered_and_the_control_is_0(opened: Opened, edition: int) -> None:
-    assert [sheet.member for sheet in opened(*_ensemble(edition)).sheets] == [0, 1, 2]
+    assert [field2d.member for field2d in opened(*_ensemble(edition)).fields] == [0, 1, 2]
 
 
 def _ensemble(edition: int) -> list[bytes]:
@@ -399,10 +399,10 @@ def test_a_deterministic_forecast_is_no_member_0(opened: Opened, keys: dict[str,
 
 
 def test_gusts_of_members(opened: Opened) -> None:
-    sheet = _only(
+    field2d = _only(
         opened(message("10fg", 20.0, productDefinitionTemplateNumber=11, perturbationNumber=7, stepRange="0-3"))
     )
-    assert (sheet.quantity, sheet.member, sheet.time) == ("gust", 7, NOON + 3 * 3600)
+    assert (field2d.quantity, field2d.member, field2d.time) == ("gust", 7, NOON + 3 * 3600)
 
 
 def _derived(edition: int, mean: bool) -> bytes:
@@ -416,17 +416,17 @@ def test_a_spread_is_never_a_wind_and_a_mean_only_where_there_are_no_members(ope
     mean, spread = _derived(edition, mean=True), _derived(edition, mean=False)
     statistics = "1 field of spreads, probabilities or other statistics of an ensemble: not used"
     alone = opened(mean, spread)
-    assert (len(alone.sheets), alone.sheets[0].member, alone.unused) == (1, None, (statistics,))
+    assert (len(alone.fields), alone.fields[0].member, alone.unused) == (1, None, (statistics,))
     beside = opened(*_ensemble(edition), mean, spread)
-    assert [sheet.member for sheet in beside.sheets] == [0, 1, 2]
+    assert [field2d.member for field2d in beside.fields] == [0, 1, 2]
     assert beside.unused == (statistics, "1 field of means of an ensemble whose members are there too: not used")
 
 
 @pytest.mark.parametrize("template", [5, 6, 9, 10])
 def test_probabilities_and_percentiles_are_no_wind(opened: Opened, template: int) -> None:
-    catalogue = opened(message("", productDefinitionTemplateNumber=template, **_numbers(2)))
-    assert catalogue.sheets == ()
-    assert len(catalogue.unused) == 1
+    index = opened(message("", productDefinitionTemplateNumber=template, **_numbers(2)))
+    assert index.fields == ()
+    assert len(index.unused) == 1
 
 
 # ---------------------------------------------------------------------------------------------- grids
@@ -451,15 +451,15 @@ def test_every_scanning_mode_gives_the_same_wind_at_the_same_place(opened: Opene
         "latitudeOfFirstGridPointInDegrees": north, "latitudeOfLastGridPointInDegrees": south,
         "longitudeOfFirstGridPointInDegrees": west, "longitudeOfLastGridPointInDegrees": east,
     }  # fmt: skip
-    sheet = _only(opened(message("u", values, edition, grid)))
-    np.testing.assert_allclose(sheet.grid.latitudes, latitudes)
-    np.testing.assert_allclose(sheet.grid.longitudes, longitudes)
-    np.testing.assert_allclose(_whole(sheet), _slope(*_places(sheet)), atol=ONE_CM_PER_SECOND)
+    field2d = _only(opened(message("u", values, edition, grid)))
+    np.testing.assert_allclose(field2d.grid.latitudes, latitudes)
+    np.testing.assert_allclose(field2d.grid.longitudes, longitudes)
+    np.testing.assert_allclose(_whole(field2d), _slope(*_places(field2d)), atol=ONE_CM_PER_SECOND)
 
 
 def test_flags_that_edition_1_reserves_mean_nothing(opened: Opened) -> None:
     values = np.arange(12.0)
-    plain, odd = opened(*(message("u", values, 1, box(scanningMode=scanning)) for scanning in (0, 16 | 1))).sheets
+    plain, odd = opened(*(message("u", values, 1, box(scanningMode=scanning)) for scanning in (0, 16 | 1))).fields
     np.testing.assert_array_equal(_whole(odd), _whole(plain))
 
 
@@ -536,13 +536,13 @@ def _projected(
 def test_the_nodes_of_projected_grids_are_where_proj_has_them(opened: Opened, name: str, scanning: int) -> None:
     """The first node is the one stored first, as FM 92 has it, and not always the lower left, as eccodes has it."""
     grid, latitudes, longitudes = _projected(name, scanning)
-    sheet = _only(opened(message("u", stored(_slope(latitudes, longitudes), scanning), 2, grid, **ALONG_GRID[2])))
-    assert sheet.along_grid
-    assert sheet.grid.regular == (name == "mercator")
-    found = _places(sheet)
+    field2d = _only(opened(message("u", stored(_slope(latitudes, longitudes), scanning), 2, grid, **ALONG_GRID[2])))
+    assert field2d.along_grid
+    assert field2d.grid.regular == (name == "mercator")
+    found = _places(field2d)
     np.testing.assert_allclose(found[0], latitudes, atol=TEN_METRES)
     np.testing.assert_allclose((found[1] - longitudes + 180.0) % 360.0, 180.0, atol=TEN_METRES)
-    np.testing.assert_allclose(_whole(sheet), _slope(latitudes, longitudes), atol=ONE_CM_PER_SECOND)
+    np.testing.assert_allclose(_whole(field2d), _slope(latitudes, longitudes), atol=ONE_CM_PER_SECOND)
 
 
 @pytest.mark.parametrize("scanning", [0, 64])
@@ -551,18 +551,18 @@ def test_projected_grids_of_edition_1(opened: Opened, name: str, scanning: int) 
     """Its angles are rounded to 0.001 degrees, and the origin of Lambert grids does not matter."""
     grid, latitudes, longitudes = _projected(name, scanning, "+R=6367470")
     grid.pop("LaDInDegrees")
-    sheet = _only(opened(message("u", stored(_slope(latitudes, longitudes), scanning), 1, grid, **ALONG_GRID[1])))
-    assert sheet.along_grid
-    np.testing.assert_allclose(sheet.grid.latitudes, latitudes, atol=6e-4)
-    np.testing.assert_allclose((sheet.grid.longitudes - longitudes + 180.0) % 360.0, 180.0, atol=1e-3)
+    field2d = _only(opened(message("u", stored(_slope(latitudes, longitudes), scanning), 1, grid, **ALONG_GRID[1])))
+    assert field2d.along_grid
+    np.testing.assert_allclose(field2d.grid.latitudes, latitudes, atol=6e-4)
+    np.testing.assert_allclose((field2d.grid.longitudes - longitudes + 180.0) % 360.0, 180.0, atol=1e-3)
 
 
 @pytest.mark.parametrize("name", ["lambert", "mercator"])
 def test_projected_grids_on_an_ellipsoid(opened: Opened, name: str) -> None:
     grid, latitudes, _ = _projected(name, 64, "+ellps=GRS80", shapeOfTheEarth=4)
-    sheet = _only(opened(message("u", 5.0, 2, grid)))
-    np.testing.assert_allclose(_places(sheet)[0], latitudes, atol=TEN_METRES)
-    assert not sheet.along_grid
+    field2d = _only(opened(message("u", 5.0, 2, grid)))
+    np.testing.assert_allclose(_places(field2d)[0], latitudes, atol=TEN_METRES)
+    assert not field2d.along_grid
 
 
 @pytest.mark.parametrize(("edition", "scanning"), [(e, n) for e in (1, 2) for n in (0, 64, 128, 192, 32)] + [(2, 80)])
@@ -576,11 +576,11 @@ def test_rotated_grids_lie_at_their_true_places(opened: Opened, edition: int, sc
     grid = box(*edges[0], *edges[1]) | pole | {"Ni": 5, "Nj": 4, "gridType": "rotated_ll", "scanningMode": scanning}
     grid = {"gridType": "rotated_ll", **grid}
     values = stored(_slope(latitudes, longitudes), scanning)
-    sheet = _only(opened(message("u", values, edition, grid, **ALONG_GRID[edition])))
-    assert sheet.along_grid
-    np.testing.assert_allclose(sheet.grid.latitudes, latitudes, atol=TEN_METRES)
-    np.testing.assert_allclose((sheet.grid.longitudes - longitudes + 180.0) % 360.0, 180.0, atol=TEN_METRES)
-    np.testing.assert_allclose(_whole(sheet), _slope(latitudes, longitudes), atol=ONE_CM_PER_SECOND)
+    field2d = _only(opened(message("u", values, edition, grid, **ALONG_GRID[edition])))
+    assert field2d.along_grid
+    np.testing.assert_allclose(field2d.grid.latitudes, latitudes, atol=TEN_METRES)
+    np.testing.assert_allclose((field2d.grid.longitudes - longitudes + 180.0) % 360.0, 180.0, atol=TEN_METRES)
+    np.testing.assert_allclose(_whole(field2d), _slope(latitudes, longitudes), atol=ONE_CM_PER_SECOND)
 
 
 def test_on_latitudes_and_longitudes_components_are_never_along_the_grid(opened: Opened) -> None:
@@ -600,18 +600,18 @@ def test_longitudes_cross_greenwich_and_go_round_the_globe(
 ) -> None:
     grid = box(51.0, 50.0, west, east, step) | {"Ni": columns, "Nj": 2}
     values = np.tile(np.arange(columns, dtype=np.float64), 2)
-    sheet = _only(opened(message("u", values, edition, grid)))
-    assert sheet.grid.shape == (2, columns)
-    np.testing.assert_allclose(sheet.grid.longitudes % 360.0, (west + step * np.arange(columns)) % 360.0, atol=1e-6)
-    np.testing.assert_allclose(sheet.read(np.array([0]), np.arange(columns))[0], np.arange(columns), atol=1e-3)
+    field2d = _only(opened(message("u", values, edition, grid)))
+    assert field2d.grid.shape == (2, columns)
+    np.testing.assert_allclose(field2d.grid.longitudes % 360.0, (west + step * np.arange(columns)) % 360.0, atol=1e-6)
+    np.testing.assert_allclose(field2d.read(np.array([0]), np.arange(columns))[0], np.arange(columns), atol=1e-3)
 
 
 def test_steps_that_edition_1_rounds_do_not_move_the_far_end(opened: Opened) -> None:
     """1/16 degree is told as 0.062 or 0.063: after 160 steps that is 0.08 degrees, 9 km."""
     grid = box(52.0, 51.0, 8.0, 18.0, 1 / 16)
-    sheet = _only(opened(message("u", edition=1, grid=grid)))
-    np.testing.assert_allclose(sheet.grid.longitudes, np.linspace(8.0, 18.0, 161), atol=1e-9)
-    np.testing.assert_allclose(sheet.grid.latitudes, np.linspace(51.0, 52.0, 17), atol=1e-9)
+    field2d = _only(opened(message("u", edition=1, grid=grid)))
+    np.testing.assert_allclose(field2d.grid.longitudes, np.linspace(8.0, 18.0, 161), atol=1e-9)
+    np.testing.assert_allclose(field2d.grid.latitudes, np.linspace(51.0, 52.0, 17), atol=1e-9)
 
 
 def test_a_last_longitude_that_is_wrong_does_not_matter_where_the_steps_go_round_the_globe(opened: Opened) -> None:
@@ -628,19 +628,19 @@ def test_longitudes_that_contradict_their_steps_are_an_error(tmp_path: Path) -> 
 def test_a_grid_of_one_place_and_one_of_one_column(opened: Opened) -> None:
     place = box(50.0, 50.0, 8.0, 8.0) | {"Ni": 1, "Nj": 1}
     column = box(52.0, 50.0, 8.0, 8.0) | {"Ni": 1, "Nj": 3}
-    first, second = opened(message("u", 5.0, grid=place), message("u", 5.0, grid=column)).sheets
+    first, second = opened(message("u", 5.0, grid=place), message("u", 5.0, grid=column)).fields
     assert (first.grid.shape, second.grid.shape) == ((1, 1), (3, 1))
     assert _whole(first) == [[5.0]]
 
 
 def test_a_regular_gaussian_grid_has_rows_and_columns(opened: Opened) -> None:
-    sheet = _only(opened(message("u", 5.0, sample="regular_gg_ml_grib2", grid={}, level=7, typeOfLevel="hybrid")))
-    assert sheet.grid.regular
-    assert sheet.grid.shape == (64, 128)
-    np.testing.assert_allclose(sheet.grid.latitudes[::-1], list(eccodes.codes_get_gaussian_latitudes(32)), atol=1e-9)
-    np.testing.assert_allclose(sheet.grid.longitudes, np.arange(128) * 360 / 128, atol=1e-3)
-    assert sheet.half_levels is not None
-    assert len(sheet.half_levels[0]) == len(sheet.half_levels[1]) == 92
+    field2d = _only(opened(message("u", 5.0, sample="regular_gg_ml_grib2", grid={}, level=7, typeOfLevel="hybrid")))
+    assert field2d.grid.regular
+    assert field2d.grid.shape == (64, 128)
+    np.testing.assert_allclose(field2d.grid.latitudes[::-1], list(eccodes.codes_get_gaussian_latitudes(32)), atol=1e-9)
+    np.testing.assert_allclose(field2d.grid.longitudes, np.arange(128) * 360 / 128, atol=1e-3)
+    assert field2d.half_levels is not None
+    assert len(field2d.half_levels[0]) == len(field2d.half_levels[1]) == 92
 
 
 @pytest.mark.parametrize(
@@ -662,9 +662,9 @@ def test_a_regular_gaussian_grid_has_rows_and_columns(opened: Opened) -> None:
 )
 def test_other_grids_are_counted_with_what_to_do(opened: Opened, sample: str, name: str, said: str) -> None:
     keys: dict[str, Any] = {"grid": {}, "sample": sample, "typeOfLevel": "hybrid"}
-    catalogue = opened(message(name, level=3, **keys), message(name, level=4, **keys), message("u"))
-    assert len(catalogue.sheets) == 1
-    (text,) = catalogue.unused
+    index = opened(message(name, level=3, **keys), message(name, level=4, **keys), message("u"))
+    assert len(index.fields) == 1
+    (text,) = index.unused
     assert text.startswith(said)
     assert "cdo " in text
 
@@ -686,9 +686,9 @@ def test_grids_that_eccodes_would_misplace_are_counted(
     grid = _projected(name, 64)[0] if name else {}
     if edition == 1:
         grid.pop("LaDInDegrees")
-    catalogue = opened(message("u", 5.0, edition, grid | keys))
-    assert catalogue.sheets == ()
-    (text,) = catalogue.unused
+    index = opened(message("u", 5.0, edition, grid | keys))
+    assert index.fields == ()
+    (text,) = index.unused
     assert said in text
     assert "not read" in text
     assert capfd.readouterr() == ("", "")
@@ -696,7 +696,7 @@ def test_grids_that_eccodes_would_misplace_are_counted(
 
 def test_fields_on_several_grids_each_have_their_own(opened: Opened) -> None:
     near, wide = box(), box(55.0, 45.0, 0.0, 20.0, 5.0)
-    first, second, third = opened(message("u", grid=near), message("u", grid=wide), message("v", grid=near)).sheets
+    first, second, third = opened(message("u", grid=near), message("u", grid=wide), message("v", grid=near)).fields
     assert first.grid is third.grid
     assert second.grid.shape == (3, 5)
 
@@ -710,8 +710,8 @@ def test_missing_values_are_no_numbers(opened: Opened, packing: str, missing: fl
     """Whatever number stands for them in the packer: 9999 may well be a height."""
     values = np.arange(12.0) + 100.0
     values[5] = missing
-    sheet = _only(opened(message("u", values, missing=missing, packingType=packing)))
-    found = _whole(sheet)[::-1].ravel()
+    field2d = _only(opened(message("u", values, missing=missing, packingType=packing)))
+    found = _whole(field2d)[::-1].ravel()
     assert np.isnan(found[5])
     np.testing.assert_allclose(np.delete(found, 5), np.delete(values, 5), atol=ONE_CM_PER_SECOND)
 
@@ -745,18 +745,18 @@ def test_a_message_of_edition_2_may_hold_several_fields(tmp_path: Path, section:
     path = in_one_message(tmp_path / "wind.grib", fields, section)
     with path.open("ab") as file:
         file.write(message("v", 6.0, 1))
-    with open_grib(path) as catalogue:
-        levels = [(sheet.quantity, sheet.level.value) for sheet in catalogue.sheets]
+    with open_grib(path) as index:
+        levels = [(field2d.quantity, field2d.level.value) for field2d in index.fields]
         assert levels == [("u", 85000), ("v", 70000), ("u", 50000), ("v", 85000)]
-        assert len({id(sheet.grid) for sheet in catalogue.sheets}) == 2  # one an edition
-        means = [float(_whole(sheet).mean()) for sheet in reversed(catalogue.sheets)]
+        assert len({id(field2d.grid) for field2d in index.fields}) == 2  # one an edition
+        means = [float(_whole(field2d).mean()) for field2d in reversed(index.fields)]
         assert means == pytest.approx([6.0, 5.0, 5.5, 3.0], abs=ONE_CM_PER_SECOND)
 
 
 def test_reading_does_not_turn_eccodes_switch_for_several_fields(tmp_path: Path) -> None:
     path = in_one_message(tmp_path / "wind.grib", [message("u"), message("v")])
-    with open_grib(path) as catalogue:
-        assert len(catalogue.sheets) == 2
+    with open_grib(path) as index:
+        assert len(index.fields) == 2
     with path.open("rb") as file:
         handles = [eccodes.codes_grib_new_from_file(file) for _ in range(2)]
     eccodes.codes_release(handles[0])
@@ -772,8 +772,8 @@ def test_a_bitmap_holds_for_later_fields_of_its_message(tmp_path: Path) -> None:
     body = first[16:-4] + b"".join(sections[n] for n in (4, 5, 6, 7))
     path = tmp_path / "wind.grib"
     path.write_bytes(first[:8] + (len(body) + 20).to_bytes(8) + body + b"7777")
-    with open_grib(path) as catalogue:
-        u, v = (_whole(sheet)[::-1].ravel() for sheet in catalogue.sheets)
+    with open_grib(path) as index:
+        u, v = (_whole(field2d)[::-1].ravel() for field2d in index.fields)
     assert np.isnan(u[5])
     assert np.isnan(v[5])
     np.testing.assert_allclose(np.delete(v - u, 5), 1.0, atol=ONE_CM_PER_SECOND)
@@ -790,21 +790,21 @@ def _sections(field: bytes) -> dict[int, bytes]:
 
 def test_what_lies_between_messages_is_skipped(opened: Opened) -> None:
     noise = b"\x01\r\r\n123\r\r\nHTEC85 ECMF 011200 GRIB is not here \r\r\n" + bytes(10_000)
-    catalogue = opened(noise, message("u"), noise, message("v", edition=1), b"\r\r\n\x03")
-    assert [sheet.quantity for sheet in catalogue.sheets] == ["u", "v"]
-    np.testing.assert_allclose(_whole(catalogue.sheets[1]), 5.0)
+    index = opened(noise, message("u"), noise, message("v", edition=1), b"\r\r\n\x03")
+    assert [field2d.quantity for field2d in index.fields] == ["u", "v"]
+    np.testing.assert_allclose(_whole(index.fields[1]), 5.0)
 
 
 def test_letters_grib_across_the_edge_of_a_chunk_are_found(opened: Opened) -> None:
     for gap in range(8185, 8200):
-        assert len(opened(bytes(gap), message("u")).sheets) == 1
+        assert len(opened(bytes(gap), message("u")).fields) == 1
 
 
 def test_rows_and_columns_are_read_in_the_order_asked_for_and_as_a_copy(opened: Opened) -> None:
-    sheet = _only(opened(message("u", stored(np.arange(12.0).reshape(3, 4), 0))))
+    field2d = _only(opened(message("u", stored(np.arange(12.0).reshape(3, 4), 0))))
     rows, columns = np.array([2, 0]), np.array([3, 1, 0])
     for _ in range(2):
-        values = sheet.read(rows, columns)
+        values = field2d.read(rows, columns)
         np.testing.assert_allclose(values, [[11, 9, 8], [3, 1, 0]], atol=ONE_CM_PER_SECOND)
         assert values.dtype == np.float64
         values[:] = 99.0
@@ -840,24 +840,24 @@ def test_eccodes_looks_once_at_fields_that_differ_only_in_time_and_member(opened
         for step in range(4)
         for member in range(1, 5)
     ]
-    catalogue = opened(*fields)
-    assert len({(s.level, s.time, s.member) for s in catalogue.sheets}) == 32
+    index = opened(*fields)
+    assert len({(s.level, s.time, s.member) for s in index.fields}) == 32
     assert len(handles) == 2
 
 
 def test_gusts_up_to_several_times_are_of_one_kind(opened: Opened, handles: list[int]) -> None:
     gusts = [message("10fg", productDefinitionTemplateNumber=8, stepRange=f"{n}-{n + 3}") for n in (0, 3, 6)]
     handles.clear()
-    times = [sheet.time for sheet in opened(*gusts).sheets]
+    times = [field2d.time for field2d in opened(*gusts).fields]
     assert times == [NOON + hours * 3600 for hours in (3, 6, 9)]
     assert len(handles) == 1
 
 
 def test_the_last_few_fields_stay_decoded(opened: Opened, handles: list[int]) -> None:
-    sheets = opened(*(message("u", step=step) for step in range(6))).sheets
+    fields = opened(*(message("u", step=step) for step in range(6))).fields
     handles.clear()
     for number, decoded in ((0, 1), (0, 1), (1, 2), (2, 3), (3, 4), (0, 4), (4, 5), (4, 5), (0, 6)):
-        _whole(sheets[number])
+        _whole(fields[number])
         assert len(handles) == decoded
 
 
@@ -939,8 +939,8 @@ def test_more_values_than_nodes_are_an_error_before_there_is_room_made_for_them(
     sections[5] = sections[5][:5] + b"\x90" + sections[5][6:]
     path = tmp_path / "wind.grib"
     path.write_bytes(field[:16] + b"".join(sections[n] for n in sorted(sections)) + b"7777")
-    with open_grib(path) as catalogue, pytest.raises(WindError, match="not as many as its grid"):
-        _whole(_only(catalogue))
+    with open_grib(path) as index, pytest.raises(WindError, match="not as many as its grid"):
+        _whole(_only(index))
 
 
 def test_values_that_cannot_be_decoded_are_an_error_when_they_are_read(tmp_path: Path) -> None:
@@ -950,8 +950,8 @@ def test_values_that_cannot_be_decoded_are_an_error_when_they_are_read(tmp_path:
     sections[5] = sections[5][:9] + (4242).to_bytes(2) + sections[5][11:]  # a packing that nobody knows
     path = tmp_path / "wind.grib"
     path.write_bytes(message("v") + field[:16] + b"".join(sections[n] for n in sorted(sections)) + b"7777")
-    with open_grib(path) as catalogue:
-        good, bad = catalogue.sheets
+    with open_grib(path) as index:
+        good, bad = index.fields
         _whole(good)
         with pytest.raises(
             WindError, match=r"its message at byte \d\d+ cannot be decoded .*download it again"
@@ -963,10 +963,10 @@ def test_values_that_cannot_be_decoded_are_an_error_when_they_are_read(tmp_path:
 def test_a_sheet_read_after_its_file_was_closed_is_an_error(tmp_path: Path) -> None:
     path = tmp_path / "wind.grib"
     path.write_bytes(message("u"))
-    with open_grib(path) as catalogue:
-        sheet = _only(catalogue)
+    with open_grib(path) as index:
+        field2d = _only(index)
     with pytest.raises(WindError, match="is closed"):
-        _whole(sheet)
+        _whole(field2d)
 
 
 def test_an_error_inside_of_the_context_is_left_as_it_is(tmp_path: Path) -> None:
@@ -978,7 +978,7 @@ def test_an_error_inside_of_the_context_is_left_as_it_is(tmp_path: Path) -> None
 
 def test_a_product_of_few_octets_does_not_matter(opened: Opened) -> None:
     """Template 4.254 ends where others tell their times."""
-    assert len(opened(message("", productDefinitionTemplateNumber=254), message("u")).sheets) == 1
+    assert len(opened(message("", productDefinitionTemplateNumber=254), message("u")).fields) == 1
 
 
 def test_a_message_of_edition_1_beyond_16_megabytes_is_found(opened: Opened) -> None:
@@ -986,19 +986,19 @@ def test_a_message_of_edition_1_beyond_16_megabytes_is_found(opened: Opened) -> 
     grid = box(80.0, -80.0, 0.0, 224.0, 0.08)
     large = message("u", np.tile(np.arange(2801.0), 2001), 1, grid)
     assert len(large) > 1 << 24
-    sheets = opened(message("v"), large, message("v")).sheets
-    assert [sheet.quantity for sheet in sheets] == ["v", "u", "v"]
-    row = sheets[1].read(np.array([5]), np.arange(2801))[0]
+    fields = opened(message("v"), large, message("v")).fields
+    assert [field2d.quantity for field2d in fields] == ["v", "u", "v"]
+    row = fields[1].read(np.array([5]), np.arange(2801))[0]
     np.testing.assert_allclose(row, np.arange(2801.0), atol=ONE_CM_PER_SECOND)
 
 
 def test_a_path_with_letters_beyond_ascii(tmp_path: Path) -> None:
     path = tmp_path / "Höhenwind 日.grib"
     path.write_bytes(message("u"))
-    with open_grib(path) as catalogue:
-        assert _whole(_only(catalogue)).shape == (3, 4)
+    with open_grib(path) as index:
+        assert _whole(_only(index)).shape == (3, 4)
 
 
 def test_eccodes_is_imported_only_by_those_who_read_grib() -> None:
-    code = "import sys, gcs_windplan.wind.sheets; assert 'eccodes' not in sys.modules"
+    code = "import sys, gcs_windplan.wind.field_index; assert 'eccodes' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -26,10 +26,12 @@ def path(tmp_path: Path) -> Path:
 
 def _levels(path: Path, content: dict[str, Content]) -> tuple[list[float], Any]:
     """The numbers of u's levels, and the half levels."""
-    sheets = [sheet for sheet, _ in everything(write_netcdf(path, {**AXES, **content}))[1] if sheet.quantity == "u"]
-    assert {sheet.level.kind for sheet in sheets} == {"model"}
-    assert len({id(sheet.half_levels) for sheet in sheets}) == 1
-    return [sheet.level.value for sheet in sheets], sheets[0].half_levels
+    fields = [
+        field2d for field2d, _ in everything(write_netcdf(path, {**AXES, **content}))[1] if field2d.quantity == "u"
+    ]
+    assert {field2d.level.kind for field2d in fields} == {"model"}
+    assert len({id(field2d.half_levels) for field2d in fields}) == 1
+    return [field2d.level.value for field2d in fields], fields[0].half_levels
 
 
 def _check(halves: Any) -> None:
@@ -175,9 +177,9 @@ def test_levels_that_are_only_counted_are_not_mixed_up_with_others(path: Path) -
         "u": wind("lev lat lon", 2, 3, 4),
         "t": wind("lev_2 lat lon", 3, 3, 4, units="K"),
     }
-    catalogue, sheets = everything(write_netcdf(path, {**AXES, **content}))
-    assert {sheet.name for sheet, _ in sheets} == {"u"}
-    assert catalogue.unused[0].startswith("t: its model levels lev_2 are others than lev, and neither has numbers")
+    index, fields = everything(write_netcdf(path, {**AXES, **content}))
+    assert {field2d.name for field2d, _ in fields} == {"u"}
+    assert index.unused[0].startswith("t: its model levels lev_2 are others than lev, and neither has numbers")
 
 
 def test_coefficients_of_unknown_units_are_none(path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Sheets of real files and of files with traps: quantities, values, levels, members, reading."""
+"""2D fields of real files and of files with traps: quantities, values, levels, members, reading."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from gcs_windplan.constants import STANDARD_GRAVITY
 from gcs_windplan.errors import WindError
 from gcs_windplan.units import KNOT
+from gcs_windplan.wind.field_index import SURFACE, Field2D, Level, LevelKind
 from gcs_windplan.wind.files.netcdf import open_netcdf
-from gcs_windplan.wind.sheets import SURFACE, Level, LevelKind, Sheet
 from tests.wind.netcdf_maker import AXES, HOURS, LAT, LON, MS, NOON, Content, everything, wind, write_netcdf
 
 ONE_CM_PER_SECOND = 0.01
@@ -39,8 +39,8 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "trap.nc"
 
 
-def _only(path: Path, quantity: str) -> tuple[Sheet, Any]:
-    found = [(sheet, values) for sheet, values in everything(path)[1] if sheet.quantity == quantity]
+def _only(path: Path, quantity: str) -> tuple[Field2D, Any]:
+    found = [(field2d, values) for field2d, values in everything(path)[1] if field2d.quantity == quantity]
     assert len(found) == 1
     return found[0]
 
@@ -89,36 +89,36 @@ def test_at_ten_points_of_real_files_it_gives_what_netcdf4_reads(
     name: str, quantity: str, variable: str, factor: float, level_axis: str, level_unit: float
 ) -> None:
     path, random = _real(name), np.random.default_rng(11)
-    with netCDF4.Dataset(path) as file, open_netcdf(path) as catalogue:
+    with netCDF4.Dataset(path) as file, open_netcdf(path) as index:
         clock = file["valid_time" if "valid_time" in file.variables else "time"]
         dates: Any = netCDF4.num2date(clock[:], clock.units, "proleptic_gregorian")
-        sheets = {(s.time, s.level): s for s in catalogue.sheets if s.quantity == quantity}
-        assert len(sheets) == len(clock) * len(file[level_axis])
+        fields = {(s.time, s.level): s for s in index.fields if s.quantity == quantity}
+        assert len(fields) == len(clock) * len(file[level_axis])
         for _ in range(10):
             pick = tuple(int(random.integers(size)) for size in file[variable].shape)
             moment = (dates[pick[0]] - type(dates[0])(1970, 1, 1)).total_seconds()
             kind: LevelKind = "pressure" if level_unit == 100 else "height"
-            sheet = sheets[moment, Level(kind, float(file[level_axis][pick[1]]) * level_unit)]
-            read = sheet.read(np.array([pick[2]]), np.array([pick[3]]))
+            field2d = fields[moment, Level(kind, float(file[level_axis][pick[1]]) * level_unit)]
+            read = field2d.read(np.array([pick[2]]), np.array([pick[3]]))
             np.testing.assert_allclose(read, file[variable][pick] * factor, atol=ONE_CM_PER_SECOND)
 
 
 def test_the_real_ndfd_file_tells_its_run_and_that_its_speeds_need_no_turning() -> None:
-    with open_netcdf(_real("ndfd_20170603T1800.nc")) as catalogue:
-        assert {sheet.quantity for sheet in catalogue.sheets} == {"speed", "direction"}
-        assert {(sheet.run, sheet.along_grid) for sheet in catalogue.sheets} == {(1496232000.0, False)}
-        assert len({id(sheet.grid) for sheet in catalogue.sheets}) == 1
+    with open_netcdf(_real("ndfd_20170603T1800.nc")) as index:
+        assert {field2d.quantity for field2d in index.fields} == {"speed", "direction"}
+        assert {(field2d.run, field2d.along_grid) for field2d in index.fields} == {(1496232000.0, False)}
+        assert len({id(field2d.grid) for field2d in index.fields}) == 1
 
 
 def test_the_scalar_number_of_the_new_era5_file_is_no_ensemble() -> None:
-    with open_netcdf(_real("ndrt_2020_weather_data_ERA5_new.nc")) as catalogue:
-        assert {sheet.member for sheet in catalogue.sheets} == {None}
-        assert {sheet.quantity for sheet in catalogue.sheets} == {"u", "v", "height"}  # no temperature on pressures
+    with open_netcdf(_real("ndrt_2020_weather_data_ERA5_new.nc")) as index:
+        assert {field2d.member for field2d in index.fields} == {None}
+        assert {field2d.quantity for field2d in index.fields} == {"u", "v", "height"}  # no temperature on pressures
 
 
 def test_the_title_and_the_units_are_told(path: Path) -> None:
-    catalogue, sheets = everything(write_netcdf(path, {**AXES, "u": wind("lat lon", 3, 4, **U)}, title="a test"))
-    assert (catalogue.source, catalogue.title, sheets[0][0].units) == ("trap.nc", "a test", "m s-1")
+    index, fields = everything(write_netcdf(path, {**AXES, "u": wind("lat lon", 3, 4, **U)}, title="a test"))
+    assert (index.source, index.title, fields[0][0].units) == ("trap.nc", "a test", "m s-1")
 
 
 @pytest.mark.parametrize(
@@ -147,8 +147,8 @@ def test_every_quantity_is_found_with_its_level(path: Path) -> None:
         "lnsp": wind(grid, 3, 4, value=math.log(1e5), units="~"),
         "t2m": wind(grid, 3, 4, value=280, units="K", long_name="2 metre temperature"),
     }
-    _, sheets = everything(write_netcdf(path, {**AXES, "lev": lev, **on_levels, **surface}))
-    found = {(s.quantity, s.level): float(values[0, 0]) for s, values in sheets}
+    _, fields = everything(write_netcdf(path, {**AXES, "lev": lev, **on_levels, **surface}))
+    found = {(s.quantity, s.level): float(values[0, 0]) for s, values in fields}
     ten, hundred = Level("height", 10.0), Level("height", 100.0)
     assert found == pytest.approx(
         {
@@ -181,7 +181,7 @@ def test_members_are_told_by_their_numbers_or_their_places(path: Path) -> None:
             "v100": wind("member1 lat lon", 1, 3, 4),
         },
     )
-    found = [(sheet.name, sheet.member) for sheet, _ in everything(path)[1]]
+    found = [(field2d.name, field2d.member) for field2d, _ in everything(path)[1]]
     assert found == [("u10", 0), ("u10", 7), ("u100", 0), ("u100", 1), ("v10", 0), ("v10", 1), ("v100", None)]
 
 
@@ -208,20 +208,20 @@ def test_percent_spread_errors_extremes_and_currents_are_no_wind(path: Path) -> 
         "u10n": wind("lat lon", 3, 4, long_name="10 metre u-component of neutral wind"),
     }
     depth: Content = ("depth", [1.0, 2.0], {"units": "m", "positive": "down"})
-    catalogue, sheets = everything(write_netcdf(path, {**AXES, "depth": depth, **odd}))
-    assert not sheets
-    assert len(catalogue.unused) == 1
-    assert "wind_speed_sd, u10_spread, " in catalogue.unused[0]
-    assert "a statistic of it" in catalogue.unused[0]
+    index, fields = everything(write_netcdf(path, {**AXES, "depth": depth, **odd}))
+    assert not fields
+    assert len(index.unused) == 1
+    assert "wind_speed_sd, u10_spread, " in index.unused[0]
+    assert "a statistic of it" in index.unused[0]
 
 
 def test_a_file_of_one_place_is_a_grid_of_one_node(path: Path) -> None:
     place = {"lat": ("", 50.5, LAT[2]), "lon": ("", 7.25, LON[2])}
     write_netcdf(path, {**place, "time": TIMES, "u10": ("time", [1.0, 2.0], {**MS, "coordinates": "lat lon"})})
-    _, sheets = everything(path)
-    assert [(s.grid.shape, s.time) for s, _ in sheets] == [((1, 1), NOON), ((1, 1), NOON + 3 * 3600)]
-    assert [values.tolist() for _, values in sheets] == [[[1.0]], [[2.0]]]
-    assert sheets[0][0].grid.latitudes.tolist() == [50.5]
+    _, fields = everything(path)
+    assert [(s.grid.shape, s.time) for s, _ in fields] == [((1, 1), NOON), ((1, 1), NOON + 3 * 3600)]
+    assert [values.tolist() for _, values in fields] == [[[1.0]], [[2.0]]]
+    assert fields[0][0].grid.latitudes.tolist() == [50.5]
 
 
 def test_missing_or_strange_units_are_told_when_the_sheet_is_read(path: Path) -> None:
@@ -238,26 +238,26 @@ def test_what_can_be_done_without_is_passed_over_if_its_units_are_unknown(path: 
         "sr": wind("lat lon", 3, 4, units="W m-2"),
         "gust": ("lat lon", np.zeros((3, 4)), {}),
     }
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert [sheet.name for sheet, _ in sheets] == ["u10"]
-    assert "sr is in 'W m-2', which is not a height" in catalogue.unused[0]
-    assert catalogue.unused[1].startswith("gust has no units")
+    index, fields = everything(write_netcdf(path, content))
+    assert [field2d.name for field2d, _ in fields] == ["u10"]
+    assert "sr is in 'W m-2', which is not a height" in index.unused[0]
+    assert index.unused[1].startswith("gust has no units")
 
 
 def test_a_level_axis_without_units_is_an_error_unless_there_is_other_wind(path: Path) -> None:
     bare: Content = ("h", [10.0, 20.0], {"standard_name": "height"})
     content = {**AXES, "h": bare, "u": wind("h lat lon", 2, 3, 4, **U)}
     assert "u: h has no units; set its attribute `units` to a height" in _say(write_netcdf(path, content))
-    catalogue, sheets = everything(write_netcdf(path, {**content, "u10": wind("lat lon", 3, 4)}))
-    assert [sheet.name for sheet, _ in sheets] == ["u10"]
-    assert catalogue.unused[0].startswith("u: h has no units")
+    index, fields = everything(write_netcdf(path, {**content, "u10": wind("lat lon", 3, 4)}))
+    assert [field2d.name for field2d, _ in fields] == ["u10"]
+    assert index.unused[0].startswith("u: h has no units")
 
 
 def test_an_axis_that_counts_nothing_known_is_explained(path: Path) -> None:
     content = {**AXES, "level": ("level", [1000.0, 850.0], {}), "u": wind("level lat lon", 2, 3, 4, **U)}
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert not sheets
-    assert "u: an axis level of 2 values counts nothing that is known: set the `units`" in catalogue.unused[0]
+    index, fields = everything(write_netcdf(path, content))
+    assert not fields
+    assert "u: an axis level of 2 values counts nothing that is known: set the `units`" in index.unused[0]
 
 
 def test_attributes_of_odd_types_do_no_harm(path: Path) -> None:
@@ -270,8 +270,8 @@ def test_attributes_of_odd_types_do_no_harm(path: Path) -> None:
         "missing_value": 3.0,
     }
     write_netcdf(path, {**AXES, "u10": wind("lat lon", 3, 4, **odd)}, title=np.arange(2))
-    catalogue, sheets = everything(path)
-    assert (catalogue.title, sheets[0][0].quantity) == ("", "u")
+    index, fields = everything(path)
+    assert (index.title, fields[0][0].quantity) == ("", "u")
 
 
 _ATTRIBUTES = (
@@ -318,9 +318,9 @@ def test_whatever_stands_in_attributes_there_are_sheets_or_an_error_in_words(
 
 def test_a_variable_without_values_is_explained(path: Path) -> None:
     empty: Content = ("time", np.zeros(0), {"units": HOURS})
-    catalogue, sheets = everything(write_netcdf(path, {**AXES, "time": empty, "u10": wind("time lat lon", 0, 3, 4)}))
-    assert not sheets
-    assert catalogue.unused == ("u10: it is empty: nothing was written into it",)
+    index, fields = everything(write_netcdf(path, {**AXES, "time": empty, "u10": wind("time lat lon", 0, 3, 4)}))
+    assert not fields
+    assert index.unused == ("u10: it is empty: nothing was written into it",)
 
 
 def test_groups_are_pointed_out(path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
-from gcs_windplan.wind.sheets import SURFACE, Level, LevelKind
+from gcs_windplan.wind.field_index import SURFACE, Level, LevelKind
 from tests.wind.netcdf_maker import AXES, HOURS, MS, NOON, Content, everything, wind, write_netcdf
 
 HOUR = 3600.0
@@ -23,15 +23,15 @@ def path(tmp_path: Path) -> Path:
 
 
 def _levels(path: Path, content: dict[str, Content]) -> list[Level]:
-    return [sheet.level for sheet, _ in everything(write_netcdf(path, {**AXES, **content}))[1]]
+    return [field2d.level for field2d, _ in everything(write_netcdf(path, {**AXES, **content}))[1]]
 
 
 def _times(path: Path, content: dict[str, Content]) -> list[tuple[float | None, float | None]]:
     """Hours since noon and since the run's noon."""
-    sheets = everything(write_netcdf(path, {**AXES, **content}))[1]
+    fields = everything(write_netcdf(path, {**AXES, **content}))[1]
     return [
-        tuple(None if moment is None else (moment - NOON) / HOUR for moment in (sheet.time, sheet.run))  # type: ignore[misc]
-        for sheet, _ in sheets
+        tuple(None if moment is None else (moment - NOON) / HOUR for moment in (field2d.time, field2d.run))  # type: ignore[misc]
+        for field2d, _ in fields
     ]
 
 
@@ -118,8 +118,8 @@ def test_a_geopotential_on_no_level_is_the_terrains(path: Path) -> None:
         "HGT_surface": wind("lat lon", 3, 4, units="gpm"),
         "HGT_500mb": wind("lat lon", 3, 4, units="gpm"),
     }
-    sheets = everything(write_netcdf(path, {**AXES, **content}))[1]
-    assert [(sheet.quantity, sheet.level) for sheet, _ in sheets] == [
+    fields = everything(write_netcdf(path, {**AXES, **content}))[1]
+    assert [(field2d.quantity, field2d.level) for field2d, _ in fields] == [
         ("terrain", SURFACE), ("height", Level("pressure", 5e4)), ("terrain", SURFACE),
         ("height", Level("pressure", 5e4)),
     ]  # fmt: skip

@@ -28,12 +28,12 @@ def test_rows_and_columns_are_read_in_any_order_and_around_the_globe(path: Path)
     lon: Content = ("lon", np.arange(0.0, 360.0, 10.0), {"units": "degrees_east"})
     lat: Content = ("lat", [80.0, 40.0, 0.0, -40.0, -80.0], {"units": "degrees_north"})
     write_netcdf(path, {"time": TIMES, "lon": lon, "lat": lat, "u": ("time lon lat", values, {**MS, **U})})
-    with open_netcdf(path) as catalogue:
-        sheet = catalogue.sheets[1]
-        assert (sheet.grid.shape, sheet.grid.regular, sheet.time) == ((5, 36), True, NOON + 3 * 3600)
+    with open_netcdf(path) as index:
+        field2d = index.fields[1]
+        assert (field2d.grid.shape, field2d.grid.regular, field2d.time) == ((5, 36), True, NOON + 3 * 3600)
         rows, columns = np.array([3, 0, 1]), np.array([34, 35, 0, 1, 2])
-        np.testing.assert_array_equal(sheet.read(rows, columns), values[1].T[np.ix_(rows, columns)])
-        np.testing.assert_array_equal(whole(sheet), values[1].T)
+        np.testing.assert_array_equal(field2d.read(rows, columns), values[1].T[np.ix_(rows, columns)])
+        np.testing.assert_array_equal(whole(field2d), values[1].T)
 
 
 def test_compressed_files_are_read_chunk_by_chunk_and_each_once(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,12 +52,12 @@ def test_compressed_files_are_read_chunk_by_chunk_and_each_once(path: Path, monk
         return read(self, *args)
 
     monkeypatch.setattr(NetcdfFile, "_read", counted)
-    with open_netcdf(path) as catalogue:
-        for sheet in sorted(catalogue.sheets, key=lambda sheet: (sheet.level, sheet.time)):  # against their order
-            number = int(sheet.level.value / 10 - 1)
-            place = values[int(((sheet.time or 0) - NOON) // 3600), number, 5:9, 3:20]
-            np.testing.assert_array_equal(sheet.read(np.arange(5, 9), np.arange(3, 20)), place)
-    assert len(catalogue.sheets) == 48
+    with open_netcdf(path) as index:
+        for field2d in sorted(index.fields, key=lambda field2d: (field2d.level, field2d.time)):  # against their order
+            number = int(field2d.level.value / 10 - 1)
+            place = values[int(((field2d.time or 0) - NOON) // 3600), number, 5:9, 3:20]
+            np.testing.assert_array_equal(field2d.read(np.arange(5, 9), np.arange(3, 20)), place)
+    assert len(index.fields) == 48
     assert len(blocks) == 4  # two variables, twice three times
 
 

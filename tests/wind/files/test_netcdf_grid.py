@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gcs_windplan.wind.sheets import Grid, Sheet
+from gcs_windplan.wind.field_index import Field2D, Grid
 from tests.wind.netcdf_maker import AXES, LAT, LON, MS, Content, everything, wind, write_netcdf
 
 ONE_METRE = 1e-5  # [deg]
@@ -34,21 +34,21 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "trap.nc"
 
 
-def _sheets(path: Path, content: dict[str, Content]) -> list[Sheet]:
-    return [sheet for sheet, _ in everything(write_netcdf(path, content))[1]]
+def _fields(path: Path, content: dict[str, Content]) -> list[Field2D]:
+    return [field2d for field2d, _ in everything(write_netcdf(path, content))[1]]
 
 
 def _grid(path: Path, content: dict[str, Content]) -> Grid:
-    sheets = _sheets(path, content)
-    assert len({id(sheet.grid) for sheet in sheets}) == 1
-    return sheets[0].grid
+    fields = _fields(path, content)
+    assert len({id(field2d.grid) for field2d in fields}) == 1
+    return fields[0].grid
 
 
 def _unused(path: Path, content: dict[str, Content]) -> str:
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert not [sheet for sheet, _ in sheets if sheet.quantity in ("u", "v")]
-    assert len(catalogue.unused) == 1
-    return catalogue.unused[0]
+    index, fields = everything(write_netcdf(path, content))
+    assert not [field2d for field2d, _ in fields if field2d.quantity in ("u", "v")]
+    assert len(index.unused) == 1
+    return index.unused[0]
 
 
 @pytest.mark.parametrize("latitudes", [[52.0, 51.0, 50.0], [50.0, 51.0, 52.0]])
@@ -76,9 +76,9 @@ def test_variables_with_and_without_dimensions_of_one_share_a_grid(path: Path) -
         "lat": ("lat", [50.0], LAT[2]), "lon": ("lon", [7.0], LON[2]),
         "u10": wind("lat lon", 1, 1), "v10": wind("lon", 1, value=3.0), "z": ("", 5.0, {"units": "m"}),
     }  # fmt: skip
-    _, sheets = everything(write_netcdf(path, content))
-    assert len({id(sheet.grid) for sheet, _ in sheets}) == 1
-    assert [values.tolist() for _, values in sheets] == [[[10.0]], [[3.0]], [[5.0]]]
+    _, fields = everything(write_netcdf(path, content))
+    assert len({id(field2d.grid) for field2d, _ in fields}) == 1
+    assert [values.tolist() for _, values in fields] == [[[10.0]], [[3.0]], [[5.0]]]
 
 
 @pytest.mark.parametrize("said", [{"coordinates": "nav_lon nav_lat"}, {}])
@@ -103,9 +103,9 @@ def test_rows_are_the_dimension_that_is_not_x(path: Path) -> None:
         "lon": ("x y", BENT.T + 1, LON2),
         "u10": ("x y", BENT.T, MS),
     }
-    _, sheets = everything(write_netcdf(path, content))
-    np.testing.assert_array_equal(sheets[0][0].grid.latitudes, BENT)
-    np.testing.assert_array_equal(sheets[0][1], BENT)
+    _, fields = everything(write_netcdf(path, content))
+    np.testing.assert_array_equal(fields[0][0].grid.latitudes, BENT)
+    np.testing.assert_array_equal(fields[0][1], BENT)
 
 
 def test_a_table_of_parallels_and_meridians_is_known_as_such(path: Path) -> None:
@@ -128,13 +128,11 @@ def test_wrfs_winds_on_the_nodes_are_used_and_those_between_them_explained(path:
         "U": wind("Time bottom_top south_north west_east_stag", 2, 6, 3, 5),
         "T": wind("Time bottom_top south_north west_east", 2, 6, 3, 4, units="K"),
     }
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert [(s.quantity, s.along_grid) for s, _ in sheets] == [("u", True)] * 2 + [("v", True)] * 2 + [
+    index, fields = everything(write_netcdf(path, content))
+    assert [(s.quantity, s.along_grid) for s, _ in fields] == [("u", True)] * 2 + [("v", True)] * 2 + [
         ("terrain", False)
     ]
-    assert catalogue.unused[0].startswith(
-        "U: they stand between the nodes, on a staggered grid (west_east_stag): bring"
-    )
+    assert index.unused[0].startswith("U: they stand between the nodes, on a staggered grid (west_east_stag): bring")
 
 
 def test_a_moving_nest_is_refused(path: Path) -> None:
@@ -161,11 +159,9 @@ def test_u_and_v_at_the_sides_of_cells_are_explained(path: Path) -> None:
         "U_10M": wind("rlat rlon", 3, 4, standard_name="grid_eastward_wind", coordinates="lon lat"),
         "V_10M": wind("rlat rlon", 3, 4, standard_name="grid_northward_wind", coordinates="lon lat"),
     }
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert [(sheet.name, sheet.along_grid) for sheet, _ in sheets] == [("U_10M", True), ("V_10M", True)]
-    assert catalogue.unused == (
-        "U, V: u and v stand at different places, on a staggered grid: bring them to one first",
-    )
+    index, fields = everything(write_netcdf(path, content))
+    assert [(field2d.name, field2d.along_grid) for field2d, _ in fields] == [("U_10M", True), ("V_10M", True)]
+    assert index.unused == ("U, V: u and v stand at different places, on a staggered grid: bring them to one first",)
 
 
 @pytest.mark.parametrize("said", [{"grid_mapping": "crs"}, {"grid_mapping": "crs: x y"}, {"grid_mapping": "gone"}, {}])
@@ -222,14 +218,14 @@ def test_whether_components_follow_the_grid(
     path: Path, name: str, said: dict[str, Any], along_grid: bool, assumed: bool
 ) -> None:
     content = {"lat": ("y x", BENT, LAT2), "lon": ("y x", BENT, LON2), name: wind("y x", 3, 4, **said)}
-    catalogue, sheets = everything(write_netcdf(path, content))
-    assert [sheet.along_grid for sheet, _ in sheets] == [along_grid]
-    assert [f"{name}: used as following the grid" in note for note in catalogue.unused] == [True] * assumed
+    index, fields = everything(write_netcdf(path, content))
+    assert [field2d.along_grid for field2d, _ in fields] == [along_grid]
+    assert [f"{name}: used as following the grid" in note for note in index.unused] == [True] * assumed
 
 
 def test_on_parallels_and_meridians_nothing_follows_the_grid(path: Path) -> None:
-    sheets = _sheets(path, {**AXES, "u": wind("lat lon", 3, 4, standard_name="x_wind")})
-    assert [sheet.along_grid for sheet in sheets] == [False]
+    fields = _fields(path, {**AXES, "u": wind("lat lon", 3, 4, standard_name="x_wind")})
+    assert [field2d.along_grid for field2d in fields] == [False]
 
 
 @pytest.mark.parametrize("dimension", ["cell", "node", "values"])

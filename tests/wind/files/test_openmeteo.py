@@ -14,8 +14,8 @@ import pytest
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.units import KNOT, STATUTE_MILE
+from gcs_windplan.wind.field_index import SURFACE, Field2D, Level, Quantity
 from gcs_windplan.wind.files.openmeteo import open_openmeteo
-from gcs_windplan.wind.sheets import SURFACE, Level, Quantity, Sheet
 
 ONE_CM_PER_SECOND = 0.01
 REAL = (
@@ -56,25 +56,25 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "answer.json"
 
 
-def _sheets(path: Path, answer: Any) -> tuple[tuple[Sheet, ...], tuple[str, ...]]:
+def _fields(path: Path, answer: Any) -> tuple[tuple[Field2D, ...], tuple[str, ...]]:
     path.write_text(json.dumps(answer), encoding="utf-8")
-    with open_openmeteo(path) as catalogue:
-        return catalogue.sheets, catalogue.unused
+    with open_openmeteo(path) as index:
+        return index.fields, index.unused
 
 
 def _say(path: Path, answer: Any) -> str:
     with pytest.raises(WindError) as error:
-        _sheets(path, answer)
+        _fields(path, answer)
     assert str(error.value).startswith(f"{path}: ")
     return str(error.value).removeprefix(f"{path}: ")
 
 
 def _values(
-    sheets: tuple[Sheet, ...], quantity: Quantity, level: Level = TEN, member: int | None = None
+    fields: tuple[Field2D, ...], quantity: Quantity, level: Level = TEN, member: int | None = None
 ) -> list[float]:
     """The values at the first node in order of time."""
-    found = [s for s in sheets if (s.quantity, s.level, s.member) == (quantity, level, member)]
-    return [float(sheet.read(ZERO, ZERO)[0, 0]) for sheet in sorted(found, key=lambda sheet: sheet.time or 0.0)]
+    found = [s for s in fields if (s.quantity, s.level, s.member) == (quantity, level, member)]
+    return [float(field2d.read(ZERO, ZERO)[0, 0]) for field2d in sorted(found, key=lambda field2d: field2d.time or 0.0)]
 
 
 def test_a_real_answer_holds_what_a_naive_reading_of_it_gives() -> None:
@@ -87,31 +87,31 @@ def test_a_real_answer_holds_what_a_naive_reading_of_it_gives() -> None:
         "direction": ("winddirection_{}hPa", 1.0),
         "height": ("geopotential_height_{}hPa", 1.0),
     }
-    with open_openmeteo(REAL) as catalogue:
-        assert catalogue.unused == ()
-        assert catalogue.sheets[0].grid.shape == (1, 1)
-        sheets = {(s.quantity, s.level, s.time): s for s in catalogue.sheets}
+    with open_openmeteo(REAL) as index:
+        assert index.unused == ()
+        assert index.fields[0].grid.shape == (1, 1)
+        fields = {(s.quantity, s.level, s.time): s for s in index.fields}
         for quantity, (name, factor) in names.items():
             for _ in range(10):
                 hour, pressure = int(random.integers(12)), int(random.choice([850, 800, 750, 700, 650, 600, 550]))
                 local = datetime.fromisoformat(answer["hourly"]["time"][hour]) + timedelta(hours=6)
-                sheet = sheets[quantity, Level("pressure", pressure * 100), local.replace(tzinfo=UTC).timestamp()]
+                field2d = fields[quantity, Level("pressure", pressure * 100), local.replace(tzinfo=UTC).timestamp()]
                 expected = answer["hourly"][name.format(pressure)][hour] * factor
-                assert float(sheet.read(ZERO, ZERO)[0, 0]) == pytest.approx(expected, abs=ONE_CM_PER_SECOND)
+                assert float(field2d.read(ZERO, ZERO)[0, 0]) == pytest.approx(expected, abs=ONE_CM_PER_SECOND)
         first = datetime(2025, 9, 11, 18, tzinfo=UTC).timestamp()
         kinds: tuple[Quantity, ...] = ("speed", "direction", "gust")
-        ten = {q: float(sheets[q, TEN, first].read(ZERO, ZERO)[0, 0]) for q in kinds}
+        ten = {q: float(fields[q, TEN, first].read(ZERO, ZERO)[0, 0]) for q in kinds}
         assert ten == pytest.approx({"speed": 13.0 * 0.44704, "direction": 191.0, "gust": 23.5 * 0.44704})
-        assert float(sheets["terrain", SURFACE, None].read(ZERO, ZERO)[0, 0]) == 1288.0
+        assert float(fields["terrain", SURFACE, None].read(ZERO, ZERO)[0, 0]) == 1288.0
 
 
 @pytest.mark.parametrize(
     ("unit", "factor"), [("km/h", 1 / 3.6), ("m/s", 1.0), ("mp/h", STATUTE_MILE / 3600), ("kn", KNOT)]
 )
 def test_speeds_are_converted(path: Path, unit: str, factor: float) -> None:
-    sheets, _ = _sheets(path, _answer(units={"wind_speed_10m": unit}))
-    assert _values(sheets, "speed") == pytest.approx([36.0 * factor, 18.0 * factor])
-    assert _values(sheets, "direction") == [270.0, 90.0]
+    fields, _ = _fields(path, _answer(units={"wind_speed_10m": unit}))
+    assert _values(fields, "speed") == pytest.approx([36.0 * factor, 18.0 * factor])
+    assert _values(fields, "direction") == [270.0, 90.0]
 
 
 @pytest.mark.parametrize(
@@ -125,8 +125,8 @@ def test_speeds_are_converted(path: Path, unit: str, factor: float) -> None:
     ],
 )
 def test_times_become_utc(path: Path, changes: dict[str, Any]) -> None:
-    sheets, _ = _sheets(path, _answer(**changes))
-    assert [sheet.time for sheet in sheets if sheet.quantity == "speed"] == [NOON, NOON + 3600]
+    fields, _ = _fields(path, _answer(**changes))
+    assert [field2d.time for field2d in fields if field2d.quantity == "speed"] == [NOON, NOON + 3600]
 
 
 def test_levels_gusts_and_terrain(path: Path) -> None:
@@ -142,21 +142,21 @@ def test_levels_gusts_and_terrain(path: Path) -> None:
         "wind_direction_850hPa": "°", "geopotential_height_850hPa": "ft", "wind_u_component_80m": "m/s",
         "wind_v_component_80m": "m/s", "temperature_2m": "°C",
     }  # fmt: skip
-    sheets, unused = _sheets(path, _answer(hourly=hourly, units=units))
+    fields, unused = _fields(path, _answer(hourly=hourly, units=units))
     assert unused == ()
     at_850, at_80 = Level("pressure", 85000.0), Level("height", 80.0)
-    assert _values(sheets, "speed", Level("height", 100.0)) == [10.0, 10.0]
-    assert _values(sheets, "gust") == pytest.approx([20.0, np.nan], nan_ok=True)
-    assert _values(sheets, "speed", at_850) == pytest.approx([15.0, 15.0])
-    assert _values(sheets, "height", at_850) == pytest.approx([1524.0, 1524.0])
-    assert (_values(sheets, "u", at_80), _values(sheets, "v", at_80)) == ([3.0, 3.0], [4.0, 4.0])
-    terrain = [sheet for sheet in sheets if sheet.quantity == "terrain"]
-    assert [(sheet.level, sheet.time) for sheet in terrain] == [(SURFACE, None)]
-    assert len(sheets) == 2 * 10 + 1
+    assert _values(fields, "speed", Level("height", 100.0)) == [10.0, 10.0]
+    assert _values(fields, "gust") == pytest.approx([20.0, np.nan], nan_ok=True)
+    assert _values(fields, "speed", at_850) == pytest.approx([15.0, 15.0])
+    assert _values(fields, "height", at_850) == pytest.approx([1524.0, 1524.0])
+    assert (_values(fields, "u", at_80), _values(fields, "v", at_80)) == ([3.0, 3.0], [4.0, 4.0])
+    terrain = [field2d for field2d in fields if field2d.quantity == "terrain"]
+    assert [(field2d.level, field2d.time) for field2d in terrain] == [(SURFACE, None)]
+    assert len(fields) == 2 * 10 + 1
 
 
 def test_without_an_elevation_there_is_no_terrain(path: Path) -> None:
-    assert {sheet.quantity for sheet in _sheets(path, _answer(elevation=None))[0]} == {"speed", "direction"}
+    assert {field2d.quantity for field2d in _fields(path, _answer(elevation=None))[0]} == {"speed", "direction"}
 
 
 def test_members_and_their_control_run(path: Path) -> None:
@@ -164,9 +164,9 @@ def test_members_and_their_control_run(path: Path) -> None:
               "wind_speed_10m_member02": [None, None], "wind_direction_10m_member02": [None, None]}  # fmt: skip
     units = {"wind_speed_10m_member01": "m/s", "wind_direction_10m_member01": "°",
              "wind_speed_10m_member02": "m/s", "wind_direction_10m_member02": "°"}  # fmt: skip
-    sheets, unused = _sheets(path, _answer(hourly=hourly, units=units))
-    assert {sheet.member for sheet in sheets if sheet.quantity != "terrain"} == {0, 1}
-    assert (_values(sheets, "speed", member=0), _values(sheets, "speed", member=1)) == ([10.0, 5.0], [1.0, 1.0])
+    fields, unused = _fields(path, _answer(hourly=hourly, units=units))
+    assert {field2d.member for field2d in fields if field2d.quantity != "terrain"} == {0, 1}
+    assert (_values(fields, "speed", member=0), _values(fields, "speed", member=1)) == ([10.0, 5.0], [1.0, 1.0])
     assert unused == ("wind_speed_10m_member02, wind_direction_10m_member02: without any value",)
 
 
@@ -175,8 +175,8 @@ def test_the_quarter_of_an_hour_is_taken_where_the_hour_has_no_wind(path: Path) 
     answer["minutely_15"], answer["minutely_15_units"] = answer["hourly"], answer["hourly_units"]
     answer["minutely_15"]["time"] = ["2026-05-01T14:00", "2026-05-01T14:15"]
     answer["hourly"], answer["hourly_units"] = {"time": [], "rain": []}, {"time": "iso8601", "rain": "mm"}
-    sheets, _ = _sheets(path, answer)
-    assert [sheet.time for sheet in sheets if sheet.quantity == "speed"] == [NOON, NOON + 900]
+    fields, _ = _fields(path, answer)
+    assert [field2d.time for field2d in fields if field2d.quantity == "speed"] == [NOON, NOON + 900]
 
 
 def test_a_lattice_of_places_is_one_grid(path: Path) -> None:
@@ -189,16 +189,16 @@ def test_a_lattice_of_places_is_one_grid(path: Path) -> None:
     ]  # fmt: skip
     answers[0].update(utc_offset_seconds=3600)
     answers[0]["hourly"]["time"] = ["2026-05-01T13:00", "2026-05-01T14:00"]
-    sheets, _ = _sheets(path, answers)
-    assert len({id(sheet.grid) for sheet in sheets}) == 1
-    grid = sheets[0].grid
+    fields, _ = _fields(path, answers)
+    assert len({id(field2d.grid) for field2d in fields}) == 1
+    grid = fields[0].grid
     np.testing.assert_allclose(grid.latitudes, [47.0, 47.1], atol=1e-5)
     np.testing.assert_allclose(grid.longitudes, [8.0, 8.25], atol=1e-5)
     rows, columns = np.array([1, 0]), np.array([0, 1])
-    both = [sheet.read(rows, columns) for sheet in sheets if sheet.quantity == "speed"]
+    both = [field2d.read(rows, columns) for field2d in fields if field2d.quantity == "speed"]
     np.testing.assert_allclose(both[0], [[47.1, 47.1], [47.0, 47.0]], atol=1e-5)
     np.testing.assert_allclose(both[1], [[8.0, 8.25], [8.0, 8.25]], atol=1e-5)
-    terrain = next(sheet for sheet in sheets if sheet.quantity == "terrain")
+    terrain = next(field2d for field2d in fields if field2d.quantity == "terrain")
     np.testing.assert_allclose(terrain.read(rows, columns), [[471, 471], [470, 470]], atol=1e-4)
 
 
@@ -213,24 +213,24 @@ def test_places_with_other_times_are_refused_and_with_other_fields_have_gaps(pat
     bare = _answer(47.1, hourly={"wind_speed_10m": [None, None], "wind_gusts_10m": [1.0, 1.0],
                                  "wind_speed_80m": [1.0, 1.0], "wind_direction_80m": [1, 1]},
                    units={"wind_gusts_10m": "m/s", "wind_speed_80m": "m/s", "wind_direction_80m": "°"})  # fmt: skip
-    sheets, unused = _sheets(path, [_answer(), bare])
-    speed = next(sheet for sheet in sheets if sheet.quantity == "speed" and sheet.level == TEN)
+    fields, unused = _fields(path, [_answer(), bare])
+    speed = next(field2d for field2d in fields if field2d.quantity == "speed" and field2d.level == TEN)
     np.testing.assert_allclose(speed.read(np.array([0, 1]), ZERO), [[10.0], [np.nan]])
     assert unused == ("wind_speed_10m: without any value", "wind_direction_10m: without speed")
 
 
 def test_a_speed_without_a_direction_is_said_and_an_error_if_there_is_no_other(path: Path) -> None:
     hourly, units = {"wind_speed_80m": [1.0, 1.0]}, {"wind_speed_80m": "m/s"}
-    sheets, unused = _sheets(path, _answer(hourly=hourly, units=units))
+    fields, unused = _fields(path, _answer(hourly=hourly, units=units))
     assert unused == ("wind_speed_80m: without direction",)
-    assert {sheet.level for sheet in sheets if sheet.quantity == "speed"} == {TEN}
+    assert {field2d.level for field2d in fields if field2d.quantity == "speed"} == {TEN}
     message = _say(path, _answer(hourly={"wind_direction_10m": None}))
     assert message.startswith("has no wind of known direction (wind_speed_10m: without direction): ask for `hourly=")
 
 
 def test_fields_of_several_models_are_pointed_out(path: Path) -> None:
     hourly = {"wind_speed_80m_icon_seamless": [1.0, 1.0], "wind_direction_80m_gfs_seamless": [1, 1]}
-    assert _sheets(path, _answer(hourly=hourly))[1] == (
+    assert _fields(path, _answer(hourly=hourly))[1] == (
         "fields of several models (gfs_seamless, icon_seamless): ask for one model",
     )
 
@@ -293,8 +293,8 @@ def test_broken_json_is_an_error(path: Path, data: bytes) -> None:
 def test_byte_order_marks_do_no_harm(path: Path, encoding: str) -> None:
     """PowerShell's `>` writes UTF-16."""
     path.write_text(json.dumps(_answer()), encoding=encoding)
-    with open_openmeteo(path) as catalogue:
-        assert len(catalogue.sheets) == 5
+    with open_openmeteo(path) as index:
+        assert len(index.fields) == 5
 
 
 def test_it_needs_no_other_library_than_numpy() -> None:

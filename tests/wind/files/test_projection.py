@@ -165,8 +165,8 @@ def test_all_nodes_of_the_real_ndfd_file_stand_where_snyder_puts_them() -> None:
     """A sphere of 6371.2 km, kilometres, and the corners that the file's own attributes tell."""
     if not NDFD.exists():
         pytest.skip("the shared test data are missing")
-    with open_netcdf(NDFD) as catalogue:
-        grid = catalogue.sheets[0].grid
+    with open_netcdf(NDFD) as index:
+        grid = index.fields[0].grid
     with netCDF4.Dataset(NDFD) as file:
         x, y = (np.asarray(file[axis][:], dtype=np.float64) * 1000 for axis in ("x", "y"))
         bounds = [float(file.getncattr(f"geospatial_{end}")) for end in ("lat_min", "lat_max", "lon_min", "lon_max")]

@@ -8,19 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs_windplan.errors import WindError
+from gcs_windplan.wind.field_index import Quantity
 from gcs_windplan.wind.files.units import (
-    OF,
-    Measure,
+    BY_QUANTITY,
+    UnitTable,
     check_units,
     compact,
     converted,
     is_something_else,
-    unit_of,
+    unit_factor,
     unlogged,
 )
-from gcs_windplan.wind.sheets import Quantity
 
-QUANTITIES = sorted(OF)
+QUANTITIES = sorted(BY_QUANTITY)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_units_in_common_use(quantity: Quantity, units: str, value: float, expec
 
 @given(st.sampled_from(QUANTITIES), st.data(), st.floats(-1e6, 1e6), st.floats(-1e6, 1e6))
 def test_conversion_is_a_straight_line_upwards(quantity: Quantity, data: st.DataObject, one: float, two: float) -> None:
-    units = data.draw(st.sampled_from(sorted(OF[quantity].sizes)))
+    units = data.draw(st.sampled_from(sorted(BY_QUANTITY[quantity].factors)))
     a, middle, b = converted(np.array([one, (one + two) / 2, two]), quantity, "x", units)
     assert middle == pytest.approx((a + b) / 2, rel=1e-9, abs=1e-6)
     assert (b - a) * (two - one) >= 0
@@ -58,9 +58,9 @@ def test_conversion_is_a_straight_line_upwards(quantity: Quantity, data: st.Data
 
 @given(st.sampled_from(QUANTITIES), st.data())
 def test_case_and_blanks_do_not_matter(quantity: Quantity, data: st.DataObject) -> None:
-    measure: Measure = OF[quantity]
-    units = data.draw(st.sampled_from(sorted(measure.sizes)))
-    assert unit_of("x", f" {units.upper()} ", measure) == measure.sizes[units]
+    table: UnitTable = BY_QUANTITY[quantity]
+    units = data.draw(st.sampled_from(sorted(table.factors)))
+    assert unit_factor("x", f" {units.upper()} ", table) == table.factors[units]
 
 
 @pytest.mark.parametrize(("units", "quantity", "logarithm"), [("m", "height", False), ("~", "pressure", True)])

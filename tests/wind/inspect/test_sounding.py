@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,11 @@ import pytest
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.wind import Wanted, read_forecast
-from gcs_windplan.wind.report.excerpt import Choice
-from gcs_windplan.wind.report.inventory import open_files
-from gcs_windplan.wind.report.sounding import Altitude, Sounding, Spot, sounding_at, spot_at
-from gcs_windplan.wind.sheets import Level
+from gcs_windplan.wind import ForecastQuery, read_forecast
+from gcs_windplan.wind.field_index import Level
+from gcs_windplan.wind.inspect.sounding import HeightAsked, HeightWind, Sounding, take_sounding
+from gcs_windplan.wind.pairing import Members
+from gcs_windplan.wind.reading import open_indexes
 from tests.wind.grib_files import box, message
 from tests.wind.netcdf_maker import AXES, HOURS, NOON, Content, wind, write_netcdf
 from tests.wind.other_readers import NAMES, real
@@ -31,23 +31,25 @@ TEN_METRES = {"typeOfLevel": "heightAboveGround", "level": 10}
 
 
 def _sounding(
-    path: Path, place: GeoPoint = NEAR_GREENWICH, asked: float | None = None, choice: Choice = None
+    path: Path,
+    place: GeoPoint = NEAR_GREENWICH,
+    asked: float | None = None,
+    members: Members = None,
+    height: HeightAsked | None = None,
 ) -> Sounding:
-    with open_files([path]) as files:
-        return sounding_at([file.catalogue for file in files], place, asked, choice)
+    with open_indexes([path]) as indexes:
+        return take_sounding(indexes, place, asked, members, height)
 
 
-def _spot(
-    path: Path, altitude: Altitude, place: GeoPoint = NEAR_GREENWICH, asked: float | None = None, choice: Choice = None
-) -> Spot:
-    with open_files([path]) as files:
-        return spot_at([file.catalogue for file in files], place, altitude, asked, choice)
+def _at(path: Path, height: HeightAsked, **options: Any) -> HeightWind:
+    found = _sounding(path, height=height, **options).at_height
+    assert found is not None
+    return found
 
 
-def _refused(path: Path, altitude: Altitude | None, **options: Any) -> str:
-    look = _sounding if altitude is None else partial(_spot, altitude=altitude)
+def _refused(path: Path, height: HeightAsked | None, **options: Any) -> str:
     with pytest.raises(WindError) as error:
-        look(path, **options)
+        _sounding(path, height=height, **options)
     return str(error.value)
 
 
@@ -74,38 +76,44 @@ def _pressures(path: Path, terrain: float | None = None, **more: Content) -> Pat
 def test_a_level_between_nodes(tmp_path: Path) -> None:
     """The wind grows by a metre a second with every degree east and tenfold with every degree north of 50."""
     found = _sounding(write_trap(tmp_path / "slope.nc", slope=True))
-    assert [str(row.level) for row in found.rows] == ["10 m above ground", "100 m above ground"]
-    for row in found.rows:
+    assert [str(row.level) for row in found.levels] == ["10 m above ground", "100 m above ground"]
+    for row in found.levels:
         np.testing.assert_allclose(row.winds, [[10.3, 12.0]], atol=ONE_CM_PER_SECOND)
-        assert (row.planned, row.hidden, row.members) == (True, False, (None,))
-        assert np.isnan(row.heights).all()
+        assert np.isnan(row.height)
+        assert row.above_ground == row.level.value
+    assert found.members == (None,)
 
 
 def test_heights_and_times_of_pressure_levels(tmp_path: Path) -> None:
     found = _sounding(_pressures(tmp_path / "p.nc"), asked=NOON + HOUR / 4)
-    assert [row.level for row in found.rows] == [Level("pressure", 90000.0), Level("pressure", 80000.0)]
-    np.testing.assert_allclose([row.heights[0] for row in found.rows], [1000, 2000], atol=ONE_METRE)
-    np.testing.assert_allclose([row.winds[0, 0] for row in found.rows], [12.5, 22.5], atol=ONE_CM_PER_SECOND)
-    assert found.here.times == (NOON, NOON + HOUR)
-    assert np.isnan(found.here.ground)
+    assert [row.level for row in found.levels] == [Level("pressure", 90000.0), Level("pressure", 80000.0)]
+    np.testing.assert_allclose([row.height for row in found.levels], [1000, 2000], atol=ONE_METRE)
+    np.testing.assert_allclose([row.winds[0, 0] for row in found.levels], [12.5, 22.5], atol=ONE_CM_PER_SECOND)
+    assert found.times == (NOON, NOON + HOUR)
+    assert np.isnan(found.ground)
 
 
-def test_levels_below_the_forecasts_ground_are_marked(tmp_path: Path) -> None:
+def test_levels_below_the_forecasts_ground_do_not_count(tmp_path: Path) -> None:
     found = _sounding(_pressures(tmp_path / "p.nc", terrain=1500.0))
-    assert [row.hidden for row in found.rows] == [True, False]
-    assert found.here.ground == pytest.approx(1500.0)
+    assert [str(row.level) for row in found.levels] == ["800 hPa"]
+    assert found.ground == pytest.approx(1500.0)
+    assert found.levels[0].above_ground == pytest.approx(500.0, abs=ONE_METRE)
 
 
-def test_pressure_levels_without_heights_are_shown_all_the_same(tmp_path: Path) -> None:
+def test_a_forecast_whose_levels_are_all_below_its_ground_has_no_sounding(tmp_path: Path) -> None:
+    path = _pressures(tmp_path / "p.nc", terrain=2500.0)
+    for height in (None, HeightAsked(100.0, True)):
+        assert "all its levels lie below its own ground there, 2500 m above mean sea level" in _refused(path, height)
+
+
+def test_pressure_levels_without_heights_are_of_no_use_to_planning(tmp_path: Path) -> None:
     path = tmp_path / "p.grib2"
     path.write_bytes(b"".join(message(n, values=v, level=p) for n, v in (("u", 3.0), ("v", 4.0)) for p in (850, 500)))
-    found = _sounding(path, GeoPoint(51.5, 9.2))
-    assert [str(row.level) for row in found.rows] == ["850 hPa", "500 hPa"]
-    np.testing.assert_allclose([row.winds[0] for row in found.rows], [[3, 4]] * 2, atol=ONE_CM_PER_SECOND)
-    assert "no geopotential" in _refused(path, Altitude(1000.0), place=GeoPoint(51.5, 9.2))
+    for height in (None, HeightAsked(1000.0)):
+        assert "no geopotential" in _refused(path, height, place=GeoPoint(51.5, 9.2))
 
 
-def test_a_level_that_planning_leaves_out_is_marked(tmp_path: Path) -> None:
+def test_the_levels_are_those_that_planning_uses(tmp_path: Path) -> None:
     """Planning takes one kind of level above sea level, that with the most; and of all what both times have."""
     path = tmp_path / "some.grib2"
     sea = {"typeOfLevel": "heightAboveSea", "level": 1500}
@@ -115,21 +123,22 @@ def test_a_level_that_planning_leaves_out_is_marked(tmp_path: Path) -> None:
         for step in steps
         for n in "uv"
     ]
-    fields += [message(n, stepRange=step, level=level) for n in "uv" for step in (0, 3) for level in (850, 700)]
+    fields += [
+        message(n, value, stepRange=step, level=level)
+        for step in (0, 3)
+        for level, height in ((850, 1500.0), (700, 3000.0))
+        for n, value in (("u", 5.0), ("v", 5.0), ("gh", height))
+    ]
     path.write_bytes(b"".join(fields))
-    place = GeoPoint(51.5, 9.2)
-    planned = {"10 m above ground": True, "1500 m above mean sea level": False, "850 hPa": True, "700 hPa": True}
-    at_first = {str(row.level): row.planned for row in _sounding(path, place).rows}
-    assert at_first == planned
-    for moment in (NOON + HOUR, NOON + 3 * HOUR):
-        assert {str(row.level): row.planned for row in _sounding(path, place, moment).rows} == planned
+    for moment in (None, NOON + HOUR, NOON + 3 * HOUR):
+        found = _sounding(path, GeoPoint(51.5, 9.2), moment)
+        assert {str(row.level) for row in found.levels} == {"10 m above ground", "850 hPa", "700 hPa"}
 
 
-def test_a_missing_value_counts_only_where_it_has_a_share(tmp_path: Path) -> None:
+def test_a_missing_value_stops_the_sounding_as_it_stops_planning(tmp_path: Path) -> None:
     path = write_trap(tmp_path / "gap.nc", gap="nan")  # of u at 53 N, 2 E on the upper level
-    assert np.isfinite(_sounding(path, GeoPoint(52.0, 2.0)).rows[1].winds).all()
-    assert np.isnan(_sounding(path, GeoPoint(52.1, 1.9)).rows[1].winds[0, 0])
-    assert "missing at 1 of" in _refused(path, Altitude(50.0, True), place=GeoPoint(52.1, 1.9))
+    assert np.isfinite(_sounding(path, GeoPoint(51.0, 0.0)).levels[1].winds).all()
+    assert "missing at 1 of" in _refused(path, None, place=GeoPoint(52.1, 1.9))
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if "ens" not in name])
@@ -140,23 +149,21 @@ def test_on_its_levels_a_node_has_the_wind_that_planning_has(name: str) -> None:
     the highest level it is not known where a neighbour, however small its share, has it a little lower.
     """
     path = real(name)
-    with open_files([path]) as files:
-        grid = files[0].catalogue.sheets[0].grid
-        moment = max(s.time for s in files[0].catalogue.sheets if s.time is not None)
+    with open_indexes([path]) as indexes:
+        grid = indexes[0].fields[0].grid
+        moment = max(s.time for s in indexes[0].fields if s.time is not None)
     row, column = grid.shape[0] // 2, grid.shape[1] // 2
     latitude = grid.latitudes[row] if grid.regular else grid.latitudes[row, column]
     longitude = grid.longitudes[column] if grid.regular else grid.longitudes[row, column]
     place = GeoPoint(float(latitude), float((longitude + 180) % 360 - 180))
-    found = _sounding(path, place, moment)
-    wanted = Wanted(LocalFrame(place), ground=_flat, departure=datetime.fromtimestamp(moment, UTC))
+    query = ForecastQuery(LocalFrame(place), ground=_flat, departure=datetime.fromtimestamp(moment, UTC))
     if "uv" in name:  # without heights
-        with pytest.raises(WindError, match="geopotential"):
-            read_forecast([path], wanted)
-        assert all(np.isnan(one.heights).all() for one in found.rows)
+        assert "geopotential" in _refused(path, None, place=place, asked=moment)
         return
-    field = read_forecast([path], wanted).mean
-    for one in found.rows[:-1] or found.rows:
-        z = one.level.value if one.level.kind == "height" else one.heights[0]
+    found = _sounding(path, place, moment)
+    field = read_forecast([path], query).mean
+    for one in found.levels[:-1] or found.levels:
+        z = one.level.value if one.level.kind == "height" else one.height
         wind = field.at(np.array([[0.0, 0.0, z]]))[0, :2]
         np.testing.assert_allclose(one.winds[0], wind, atol=ONE_CM_PER_SECOND)
 
@@ -166,85 +173,95 @@ def _flat(points: FloatArray) -> FloatArray:
 
 
 def test_a_height_above_sea_level(tmp_path: Path) -> None:
-    found = _spot(_pressures(tmp_path / "p.nc"), Altitude(1250.0), asked=NOON + HOUR / 2)
+    found = _at(_pressures(tmp_path / "p.nc"), HeightAsked(1250.0), asked=NOON + HOUR / 2)
     np.testing.assert_allclose(found.winds, [[17.5, 0.0]], atol=ONE_CM_PER_SECOND)
     assert found.lower is not None
-    assert (str(found.lower[0]), str(found.upper[0])) == ("900 hPa", "800 hPa")
-    assert (found.lower[1], found.upper[1]) == (pytest.approx(1000.0), pytest.approx(2000.0))
+    assert (str(found.lower.level), str(found.upper.level)) == ("900 hPa", "800 hPa")
+    assert (found.lower.height, found.upper.height) == (pytest.approx(1000.0), pytest.approx(2000.0))
     assert np.isnan(found.above_ground)
 
 
 def test_a_height_above_the_forecasts_own_ground(tmp_path: Path) -> None:
     path = _pressures(tmp_path / "p.nc", terrain=700.0)
-    found = _spot(path, Altitude(800.0, True))
+    found = _at(path, HeightAsked(800.0, True))
     np.testing.assert_allclose(found.winds, [[15.0, 0.0]], atol=ONE_CM_PER_SECOND)
     assert (found.height, found.above_ground) == (pytest.approx(1500.0), 800.0)
-    below = _spot(path, Altitude(150.0, True))
+    below = _at(path, HeightAsked(150.0, True))
     expected = 10.0 * np.log(150.0 / 0.1) / np.log(300.0 / 0.1)
     np.testing.assert_allclose(below.winds, [[expected, 0.0]], atol=ONE_CM_PER_SECOND)
     assert below.lower is None
-    assert "log law" in below.law
 
 
 def test_below_the_forecasts_ground_there_is_no_wind(tmp_path: Path) -> None:
-    found = _spot(_pressures(tmp_path / "p.nc", terrain=700.0), Altitude(600.0))
+    found = _at(_pressures(tmp_path / "p.nc", terrain=700.0), HeightAsked(600.0))
     np.testing.assert_allclose(found.winds, 0.0)
     assert found.above_ground == pytest.approx(-100.0)
 
 
 def test_levels_above_ground_need_no_terrain(tmp_path: Path) -> None:
     path = write_trap(tmp_path / "a.nc", shear=True)  # 20 m/s at 10 m, 10 m/s at 100 m
-    found = _spot(path, Altitude(55.0, True))
+    found = _at(path, HeightAsked(55.0, True))
     np.testing.assert_allclose(found.winds, [[15.0, 0.0]], atol=ONE_CM_PER_SECOND)
     assert np.isnan(found.height)
-    on_level = _spot(path, Altitude(100.0, True))
-    assert on_level.lower is not None
-    assert on_level.lower == on_level.upper
-    low = _spot(path, Altitude(1.0, True)).winds[0, 0]
+    on_level = _at(path, HeightAsked(100.0, True))
+    assert on_level.lower is on_level.upper
+    low = _at(path, HeightAsked(1.0, True)).winds[0, 0]
     assert low == pytest.approx(20.0 * np.log(10.0) / np.log(100.0), abs=ONE_CM_PER_SECOND)
 
 
 @pytest.mark.parametrize(
     ("write", "altitude", "said"),
     [
-        (_pressures, Altitude(9000.0), "9000 m above mean sea level is above its highest level (800 hPa, there 2000 m"),
-        (_pressures, Altitude(900.0), "is below its lowest level (900 hPa, there 1000 m above mean sea level) at"),
-        (_pressures, Altitude(900.0), "no terrain that tells how far down to go"),
-        (_pressures, Altitude(50.0, True), "no terrain, so that 50 m above ground cannot be told"),
-        (write_trap, Altitude(50.0), "its levels count from the ground, and it has no terrain"),
-        (write_trap, Altitude(150.0, True), "150 m above ground is above its highest level above ground, 100 m"),
+        (
+            _pressures,
+            HeightAsked(9000.0),
+            "9000 m above mean sea level is above its highest level (800 hPa, there 2000 m",
+        ),
+        (_pressures, HeightAsked(900.0), "is below its lowest level (900 hPa, there 1000 m above mean sea level)"),
+        (_pressures, HeightAsked(900.0), "no terrain that tells how far down to go"),
+        (_pressures, HeightAsked(50.0, True), "no terrain, so that 50 m above ground cannot be told"),
+        (
+            write_trap,
+            HeightAsked(50.0),
+            "so that 50 m above mean sea level cannot be told: write the height above ground",
+        ),
+        (write_trap, HeightAsked(150.0, True), "150 m above ground is above its highest level above ground, 100 m"),
     ],
 )
-def test_heights_that_the_file_does_not_know(write: Any, altitude: Altitude, said: str, tmp_path: Path) -> None:
+def test_heights_that_the_file_does_not_know(write: Any, altitude: HeightAsked, said: str, tmp_path: Path) -> None:
     assert said in _refused(write(tmp_path / "wind.nc"), altitude)
 
 
 def test_places_and_times_outside_say_by_how_much(tmp_path: Path) -> None:
     path = write_trap(tmp_path / "a.nc", hours=(0.0, 6.0))
     far = _refused(path, None, place=GeoPoint(51.0, 3.0))
-    assert "51.00000, 3.00000 lies 70.0 km outside of its area" in far
+    assert "the wind ends 70 km short of the area: it covers" in far
     assert "longitudes -2.000 to 2.000" in far
-    assert "1.0 h before its first time" in _refused(path, None, asked=NOON - HOUR)
-    assert "2.0 h after its last time" in _refused(path, Altitude(10.0, True), asked=NOON + 8 * HOUR)
-    assert "51.00000, 179.00000 lies" in _refused(path, None, place=GeoPoint(51.0, 179.0))
+    assert "the departure 2026-05-01 11:00 UTC lies 1.0 h outside of its times" in _refused(
+        path, None, asked=NOON - HOUR
+    )
+    assert "lies 2.0 h outside of its times, 2026-05-01 12:00 UTC to" in _refused(
+        path, HeightAsked(10.0, True), asked=NOON + 8 * HOUR
+    )
+    assert "short of the area" in _refused(path, None, place=GeoPoint(51.0, 179.0))
 
 
 def test_a_single_time_holds_for_three_hours(tmp_path: Path) -> None:
     path = write_trap(tmp_path / "a.nc")
-    assert _sounding(path, asked=NOON + 3 * HOUR).here.times == (NOON,)
-    assert "4.0 h after its last time" in _refused(path, None, asked=NOON + 4 * HOUR)
+    assert _sounding(path, asked=NOON + 3 * HOUR).times == (NOON,)
+    assert "is 4.0 h from the departure" in _refused(path, None, asked=NOON + 4 * HOUR)
 
 
 @pytest.mark.parametrize("place", [GeoPoint(51.0, 10.0), GeoPoint(-40.0, 100.0), GeoPoint(49.2, -12.0)])
 def test_places_outside_of_a_projected_grid(place: GeoPoint, tmp_path: Path) -> None:
     path = _bent(tmp_path / "bent.nc")
-    assert "outside of its area: the nearest node" in _refused(path, None, place=place)
+    assert re.search("short of the area|on the other side of the globe", _refused(path, None, place=place))
 
 
 def test_a_projected_grid_is_turned_to_true_north(tmp_path: Path) -> None:
     """Its x axis runs 30 degrees to the north of east."""
     found = _sounding(_bent(tmp_path / "bent.nc"), GeoPoint(0.03, 0.02))
-    np.testing.assert_allclose(found.rows[0].winds, [[8.66, 5.0]], atol=ONE_CM_PER_SECOND)
+    np.testing.assert_allclose(found.levels[0].winds, [[8.66, 5.0]], atol=ONE_CM_PER_SECOND)
 
 
 def _bent(path: Path) -> Path:
@@ -257,8 +274,8 @@ def _bent(path: Path) -> Path:
         {
             "latitude": ("y x", i * sin + j * cos, {"units": "degrees_north"}),
             "longitude": ("y x", i * cos - j * sin, {"units": "degrees_east"}),
-            "u": ("y x", np.full(i.shape, 10.0, dtype="f4"), {**said, "standard_name": "x_wind"}),
-            "v": ("y x", np.zeros(i.shape, dtype="f4"), {**said, "standard_name": "y_wind"}),
+            "u10": ("y x", np.full(i.shape, 10.0, dtype="f4"), {**said, "standard_name": "x_wind"}),
+            "v10": ("y x", np.zeros(i.shape, dtype="f4"), {**said, "standard_name": "y_wind"}),
         },
     )
 
@@ -278,22 +295,22 @@ def _ensemble(path: Path, members: int, alone: bool = False) -> Path:
 
 def test_members_of_an_ensemble(tmp_path: Path) -> None:
     path, place = _ensemble(tmp_path / "e.grib2", 3), GeoPoint(51.0, 9.5)
-    assert _sounding(path, place).rows[0].members == (1, 2, 3)
-    found = _spot(path, Altitude(10.0, True), place)
+    assert _sounding(path, place).members == (1, 2, 3)
+    found = _at(path, HeightAsked(10.0, True), place=place)
     np.testing.assert_allclose(found.winds[:, 0], [1, 2, 3], atol=ONE_CM_PER_SECOND)
-    assert _spot(path, Altitude(10.0, True), place, choice=2).members == (2,)
-    assert "it has no member 9, but 1, 2, 3" in _refused(path, None, place=place, choice=9)
+    assert _sounding(path, place, members=(2,)).members == (2,)
+    assert "it has no member 9, but 1, 2, 3" in _refused(path, None, place=place, members=(9,))
 
 
 def test_a_forecast_beside_an_ensemble_is_what_planning_takes(tmp_path: Path) -> None:
     path, place = _ensemble(tmp_path / "e.grib2", 2, alone=True), GeoPoint(51.0, 9.5)
-    assert _sounding(path, place).rows[0].winds[0, 0] == pytest.approx(100.0, abs=ONE_CM_PER_SECOND)
-    assert _sounding(path, place, choice="all").rows[0].members == (1, 2)
-    assert _sounding(path, place, choice=1).rows[0].members == (1,)
+    assert _sounding(path, place).levels[0].winds[0, 0] == pytest.approx(100.0, abs=ONE_CM_PER_SECOND)
+    assert _sounding(path, place, members="all").members == (1, 2)
+    assert _sounding(path, place, members=(1,)).members == (1,)
 
 
 def test_members_of_no_ensemble(tmp_path: Path) -> None:
-    assert "it is no ensemble" in _refused(write_trap(tmp_path / "a.nc"), None, choice=1)
+    assert "it is no ensemble" in _refused(write_trap(tmp_path / "a.nc"), None, members=(1,))
 
 
 def test_gusts(tmp_path: Path) -> None:
@@ -301,8 +318,7 @@ def test_gusts(tmp_path: Path) -> None:
     path = write_netcdf(
         tmp_path / "g.nc", {**AXES, "u10": wind("lat lon", 3, 4), "v10": wind("lat lon", 3, 4), "gust": gust}
     )
-    assert _sounding(path).here.gusts == {None: pytest.approx(17.0)}
-    assert _spot(path, Altitude(10.0, True)).here.gusts == {None: pytest.approx(17.0)}
+    assert _sounding(path).gusts.tolist() == [pytest.approx(17.0)]
 
 
 def test_of_two_runs_gust_and_wind_are_of_the_newest(tmp_path: Path) -> None:
@@ -318,8 +334,8 @@ def test_of_two_runs_gust_and_wind_are_of_the_newest(tmp_path: Path) -> None:
         )
     )  # fmt: skip
     found = _sounding(path, GeoPoint(51.0, 9.0))
-    assert found.rows[0].winds[0, 0] == pytest.approx(7.0, abs=ONE_CM_PER_SECOND)
-    assert found.here.gusts[None] == pytest.approx(12.0, abs=ONE_CM_PER_SECOND)
+    assert found.levels[0].winds[0, 0] == pytest.approx(7.0, abs=ONE_CM_PER_SECOND)
+    assert found.gusts[0] == pytest.approx(12.0, abs=ONE_CM_PER_SECOND)
 
 
 @pytest.mark.parametrize(
@@ -329,7 +345,7 @@ def test_poles_and_the_date_line(place: GeoPoint, tmp_path: Path) -> None:
     path = tmp_path / "globe.grib2"
     globe = box(90.0, -90.0, 0.0, 330.0, 30.0)
     path.write_bytes(b"".join(message(name, values=5.0, grid=globe, **TEN_METRES) for name in "uv"))
-    np.testing.assert_allclose(_sounding(path, place).rows[0].winds, [[5.0, 5.0]], atol=ONE_CM_PER_SECOND)
+    np.testing.assert_allclose(_sounding(path, place).levels[0].winds, [[5.0, 5.0]], atol=ONE_CM_PER_SECOND)
 
 
 def test_files_without_wind(tmp_path: Path) -> None:
@@ -338,6 +354,4 @@ def test_files_without_wind(tmp_path: Path) -> None:
 
 def test_a_height_that_the_file_does_not_tell(tmp_path: Path) -> None:
     path = write_trap(tmp_path / "a.nc", levels=None, names=("ua", "va"), standard_names=None)
-    (row,) = _sounding(path).rows
-    assert (row.level.kind, row.planned) == ("unknown", False)
-    assert "at what height" in _refused(path, Altitude(10.0, True))
+    assert "at what height" in _refused(path, None)

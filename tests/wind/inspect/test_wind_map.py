@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
+import netCDF4
 import numpy as np
 import pytest
 
 from gcs_windplan.errors import WindError
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.wind.report.inventory import open_files
-from gcs_windplan.wind.report.level_map import (
-    COLUMNS,
-    ROWS,
-    LevelMap,
-    map_around,
-    map_of,
-    single_place,
-    times_of,
-    usual_level,
-)
-from gcs_windplan.wind.sheets import Catalogue, Level
+from gcs_windplan.wind.field_index import Level
+from gcs_windplan.wind.inspect.wind_map import COLUMNS, ROWS, WindMap, map_around, map_of_area, usual_level
+from gcs_windplan.wind.reading import open_indexes
 from tests.wind.grib_files import box, message
 from tests.wind.netcdf_maker import NOON, write_netcdf
 from tests.wind.other_readers import real
@@ -30,20 +20,16 @@ from tests.wind.trap_file import write_trap
 
 ONE_CM_PER_SECOND = 0.01
 HOUR = 3600.0
-Found = TypeVar("Found")
 
 
-def _with(path: Path, look: Callable[[list[Catalogue]], Found]) -> Found:
-    with open_files([path]) as files:
-        return look([file.catalogue for file in files])
+def _map(path: Path, asked: float | None = None, level: Level | None = None) -> WindMap:
+    with open_indexes([path]) as indexes:
+        return map_of_area(indexes, asked, level, None)
 
 
-def _map(path: Path, asked: float | None = None, level: Level | None = None) -> LevelMap:
-    return _with(path, lambda catalogues: map_of(catalogues, asked, level, None))
-
-
-def _around(path: Path, place: GeoPoint, radius: float, **options: Any) -> LevelMap:
-    return _with(path, lambda catalogues: map_around(catalogues, place, radius, None, None, None, **options))
+def _around(path: Path, place: GeoPoint, radius: float) -> WindMap:
+    with open_indexes([path]) as indexes:
+        return map_around(indexes, place, radius, None, None, None)
 
 
 @pytest.mark.parametrize(
@@ -68,7 +54,7 @@ def test_small_grids_are_shown_node_by_node(tmp_path: Path) -> None:
     east, north = np.meshgrid(found.columns, found.rows)
     np.testing.assert_allclose(found.winds[..., 0], 10 + east, atol=ONE_CM_PER_SECOND)
     np.testing.assert_allclose(found.winds[..., 1], 10 * (north - 50), atol=ONE_CM_PER_SECOND)
-    assert (found.level, found.stride, found.between) == (Level("height", 100.0), (1, 1), False)
+    assert (found.level, found.stride) == (Level("height", 100.0), (1, 1))
     assert not found.outside.any()
 
 
@@ -113,6 +99,21 @@ def test_a_projected_grid_is_shown_on_parallels_and_meridians() -> None:
     assert np.isfinite(found.winds[~found.outside]).all()
 
 
+def test_places_of_a_projected_grid_have_the_wind_of_the_nearest_node() -> None:
+    """Beside a search through all nodes, and the file's speeds as netCDF4 reads them."""
+    path = real("ndfd_20170603T1800.nc")
+    found = _map(path)
+    with open_indexes([path]) as indexes:
+        grid = indexes[0].fields[0].grid
+    with netCDF4.Dataset(path) as file:
+        speeds = np.ma.filled(file["Wind_speed_height_above_ground"][0, 0], np.nan)
+    narrow = np.cos(np.radians(grid.latitudes))
+    for row, column in zip(*np.nonzero(~found.outside), strict=True):
+        east = (grid.longitudes - found.columns[column] + 180.0) % 360.0 - 180.0
+        nearest = np.argmin(((grid.latitudes - found.rows[row]) ** 2 + (east * narrow) ** 2).ravel())
+        assert np.hypot(*found.winds[row, column]) == pytest.approx(speeds.ravel()[nearest], abs=ONE_CM_PER_SECOND)
+
+
 @pytest.mark.parametrize("angle", [0.0, 30.0, 75.0, -60.0])
 def test_winds_along_a_turned_grid_are_turned_to_true_north(angle: float, tmp_path: Path) -> None:
     j, i = np.mgrid[-10.0:10.0:21j, -12.0:12.0:25j] / 10.0
@@ -151,7 +152,7 @@ def test_around_a_place_at_the_edge_the_outside_stays_blank(tmp_path: Path) -> N
     found = _around(write_trap(tmp_path / "a.nc"), GeoPoint(51.0, 2.0), 50_000.0)
     assert found.outside[:, COLUMNS // 2 + 1 :].all()
     assert not found.outside[:, : COLUMNS // 2].any()
-    with pytest.raises(WindError, match="outside of its area"):
+    with pytest.raises(WindError, match=r"the wind ends 35\.0 km short of 51\.00000, 2\.50000"):
         _around(write_trap(tmp_path / "a.nc"), GeoPoint(51.0, 2.5), 50_000.0)
 
 
@@ -167,19 +168,3 @@ def test_around_a_place_across_greenwich_and_the_date_line(tmp_path: Path) -> No
         middle = found.winds[ROWS // 2, COLUMNS // 2, 0]
         assert middle == pytest.approx(speed, abs=ONE_CM_PER_SECOND)
         assert not found.outside.any()
-
-
-def test_a_single_place_has_levels_and_times() -> None:
-    path = real("openmeteo_slc_hourly_pressure_levels.json")
-    assert _with(path, single_place)
-    found = _with(path, lambda catalogues: times_of(catalogues, None))
-    assert [str(level) for level in found.levels[-2:]] == ["850 hPa", "10 m above ground"]
-    assert len(found.times) == 6  # every second one of twelve
-    assert found.winds.shape == (8, 6, 2)
-    assert np.isfinite(found.winds).all()
-    single = _with(path, lambda catalogues: map_of(catalogues, found.times[1], Level("height", 10.0), None))
-    np.testing.assert_allclose(single.winds[0, 0], found.winds[-1, 1], atol=ONE_CM_PER_SECOND)
-
-
-def test_a_grid_is_no_single_place(tmp_path: Path) -> None:
-    assert not _with(write_trap(tmp_path / "a.nc"), single_place)

@@ -1,9 +1,9 @@
-"""What a forecast file holds, sheet by sheet: one quantity on one level at one time in one member.
+"""What a forecast file holds, field by field: one quantity on one level at one time in one member.
 
-Each reader (`grib`, `netcdf`, `openmeteo`) only says which sheets its file has and how to read one. What is made of
+Each reader (`grib`, `netcdf`, `openmeteo`) only says which fields its file has and how to read one. What is made of
 them, whatever the format, is the business of `forecast`.
 
-    file ─ open_grib / open_netcdf / open_openmeteo ─▶ Catalogue of Sheets ─ assemble ─▶ Forecast ─▶ GriddedWind
+    file ─ open_grib / open_netcdf / open_openmeteo ─▶ FieldIndex of 2D fields ─ assemble ─▶ Forecast ─▶ GriddedWind
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import WindError
 
-#: What a sheet holds, always in these units once read:
+#: What a field holds, always in these units once read:
 #: u, v           wind [m/s] towards true east and north, or along the grid's axes (`along_grid`)
 #: speed          of the wind [m/s]
 #: direction      that the wind blows from [degrees, clockwise from true north]
 #: gust           strongest wind [m/s]
 #: height         of the level above mean sea level [m]: geopotential / 9.80665, or geopotential height
-#: terrain        the forecast's own ground above mean sea level [m], a surface sheet
-#: roughness      surface roughness length [m], a surface sheet
+#: terrain        the forecast's own ground above mean sea level [m], a surface field
+#: roughness      surface roughness length [m], a surface field
 #: temperature    [K], and humidity, specific [kg/kg]: on model levels, for their heights
-#: pressure       at the surface [Pa], a surface sheet, for the same
+#: pressure       at the surface [Pa], a surface field, for the same
 Quantity: TypeAlias = Literal[
     "u", "v", "speed", "direction", "gust", "height", "terrain", "roughness", "temperature", "humidity", "pressure"
 ]
@@ -64,7 +64,7 @@ SURFACE = Level("surface")
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Where a sheet's values stand: `latitudes` and `longitudes` [deg] in the sheet's own order.
+    """Where a field's values stand: `latitudes` and `longitudes` [deg] in the field's own order.
 
     Either one a row (ny,) and one a column (nx,), in any order, longitudes in any turn; or both (ny, nx) where rows and
     columns are no parallels and meridians (projected and rotated grids). `name` says what it is, for people.
@@ -111,12 +111,12 @@ class Grid:
         )
 
 
-#: Reads rows and columns, by number, of a sheet: (rows, columns) in the unit of its quantity, NaN where missing.
+#: Reads rows and columns, by number, of a field: (rows, columns) in the unit of its quantity, NaN where missing.
 Read: TypeAlias = Callable[[IntArray, IntArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sheet:
+class Field2D:
     """One quantity on one level at one time in one member.
 
     `name` and `units` as in the file. `time` is when it holds and `run` when the model that made it began [s since
@@ -140,14 +140,15 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Catalogue:
-    """The sheets of an open file, its title, and what in it is no wind or cannot be used, for people.
+class FieldIndex:
+    """The fields of an open file, its title and format, and what in it is no wind or cannot be used, for people.
 
     Only quantities named in `Quantity` are listed; `unused` says in words what was passed over for a reason that a
     pilot might want to know ("12 fields on a reduced Gaussian grid: regrid them"), not what simply is no wind.
     """
 
     source: str
-    sheets: tuple[Sheet, ...]
+    fields: tuple[Field2D, ...]
     title: str = ""
     unused: tuple[str, ...] = ()
+    format: str = ""

@@ -1,0 +1,1 @@
+"""What is in forecast files: an inventory, whether a mission can be planned in them, the wind at a place, a map."""
