@@ -21,7 +21,7 @@ import numpy as np
 
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError
-from gcs_windplan.paper import area_test
+from gcs_windplan.kernels import area_test
 from gcs_windplan.terrain.dem import Dem, as_kernel_points
 from gcs_windplan.terrain.mesh import MeshTerrain, PlanBins
 
