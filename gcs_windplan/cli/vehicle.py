@@ -50,7 +50,10 @@ def vehicle(
         typer.Option(metavar="SPEED@FROM", help="A constant wind, such as 5@270 or '12 kt@300', in m/s and degrees."),
     ] = None,
     airspeed: Annotated[
-        str | None, typer.Option(metavar="SPEED", help="The most that it flies through the air; default 15 m/s.")
+        str | None,
+        typer.Option(
+            metavar="SPEED", help="The most that it flies through the air; default: what its default lean gives."
+        ),
     ] = None,
     home: Annotated[
         str | None,
