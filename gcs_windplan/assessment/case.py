@@ -10,7 +10,7 @@ from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission import Mission
 from gcs_windplan.scene import Airspace
 from gcs_windplan.terrain import Obstacles, Terrain
-from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
+from gcs_windplan.vehicle import Airframe, Autopilot, MotionProfile, VehicleType
 from gcs_windplan.wind.field import WindField
 
 
@@ -31,7 +31,7 @@ class Case:
     wind: WindField
     autopilot: Autopilot
     vehicle_type: VehicleType
-    pace: Pace
+    pace: MotionProfile
     cruise: float
     limits: Limits = field(default_factory=Limits)
     airframe: Airframe | None = None

@@ -9,12 +9,12 @@ from typing import Final
 from gcs_windplan.assessment.assessment import Assessment, Limits, Source
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.judge import assess
-from gcs_windplan.flight.duration import pace_of
 from gcs_windplan.mission import Mission
+from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.planner import Plan
 from gcs_windplan.planning.request import Request
-from gcs_windplan.vehicle import Pace, Vehicle
+from gcs_windplan.vehicle import MotionProfile, Vehicle
 
 _FASTEST: Final = 1000.0  # [m/s] no limit
 
@@ -50,14 +50,14 @@ def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) 
     )
 
 
-def pace_for(request: Request) -> Pace:
+def pace_for(request: Request) -> MotionProfile:
     """The autopilot's pace with the request's return height, and the airframe's largest airspeed where it is known."""
     fastest = _FASTEST if request.airframe is None else request.airframe.maximum_airspeed
-    pace = replace(pace_of(request.vehicle.autopilot), airspeed=fastest, return_height=request.return_height)
+    pace = replace(firmware_of(request.vehicle.autopilot).motion, airspeed=fastest, return_height=request.return_height)
     return pace_with_rates(pace, request.vehicle)
 
 
-def pace_with_rates(pace: Pace, vehicle: Vehicle) -> Pace:
+def pace_with_rates(pace: MotionProfile, vehicle: Vehicle) -> MotionProfile:
     """The pace with a fixed-wing's own rates of climb and descent; a multicopter keeps its autopilot's."""
     return pace if vehicle.hovers else replace(pace, climb=vehicle.climb, descent=vehicle.descent)
 

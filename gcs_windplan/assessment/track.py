@@ -13,13 +13,14 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission.path import Course, Move, Place, Told, course_of
+from gcs_windplan.mission.commands import Command
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.path import CommandedSpeeds, Course, Move, Place, course_of
 
 _STEPS: Final = 24  # chords of a spline
 _SPLINE_FACTOR: Final = 4.0  # ArduPilot's SplineCurve.cpp: more than this makes no curve longer
 _FINE: Final = 8  # pieces in a cell of the ground that is followed
 _MOST_STEPS: Final = 1000  # of a leg that follows it
-_PLANE_RETURN: Final = 100.0  # [m] above home: RTL_ALTITUDE, ArduPlane's default
 _LEVEL: Final = 1e-6  # [m]
 
 
@@ -96,7 +97,7 @@ def track_of(case: Case) -> Track:
     if not course.moves:
         raise InputError("the mission leads nowhere: none of its items is flown")
     moves = [piece for move in course.moves for piece in _laid_out(move, case)]
-    splines = case.hovers and case.autopilot == "ardupilot"
+    splines = firmware_of(case.autopilot, case.vehicle_type).takes(Command.NAV_SPLINE_WAYPOINT)
     remarks = [one for one in course.remarks if not (splines and "SPLINE" in one)]
     if case.mission.rally and any(move.kind == "return" for move in course.moves):
         remarks.append("its return may lead to a rally point that is nearer; judged is the way home")
@@ -108,9 +109,8 @@ def track_of(case: Case) -> Track:
 
 def return_altitude(altitude: float, home: float, case: Case) -> float:
     """The height AMSL [m] at which a vehicle at an altitude returns home."""
-    if case.hovers or case.autopilot == "px4":
-        return max(altitude, home + case.pace.return_height)
-    return home + _PLANE_RETURN
+    plane = None if case.hovers else firmware_of(case.autopilot, case.vehicle_type).plane_return
+    return max(altitude, home + case.pace.return_height) if plane is None else home + plane
 
 
 def _laid_out(move: Move, case: Case) -> list[Move]:
@@ -127,7 +127,7 @@ def _laid_out(move: Move, case: Case) -> list[Move]:
     across = replace(move, kind="leg", start=up, end=over, hold=case.pace.return_hover)
     below = float(case.terrain.heights_at(np.array([over]))[0])
     down = ground if math.isnan(below) else min(below, height)
-    landing = Move(move.item, "landing", "land", over, (east, north, down), Told())
+    landing = Move(move.item, "landing", "land", over, (east, north, down), CommandedSpeeds())
     return [*climbs, across, landing]
 
 

@@ -13,7 +13,8 @@ from gcs_windplan.cli import linking
 if TYPE_CHECKING:
     from gcs_windplan.formats import ReadMission
     from gcs_windplan.mission import Mission
-    from gcs_windplan.mission.lint import Firmware, FirmwareFinding
+    from gcs_windplan.mission.firmware import Firmware
+    from gcs_windplan.mission.lint import FirmwareFinding
 
 HELP = """Say what a firmware will reject, drop, round, change or ignore of a mission.
 
@@ -45,7 +46,7 @@ def check(
         firmware = _firmware(read.mission, autopilot, vehicle_type, file, notes)
         from gcs_windplan.mission.lint import lint
 
-        findings = lint(read.mission, firmware.autopilot, firmware.vehicle_type)
+        findings = lint(read.mission, firmware)
     for line in notes:
         linking.note(f"{file}: {line}")
     if as_json:
@@ -84,7 +85,7 @@ def _firmware(
 ) -> Firmware:
     """Whose rules count; what was decided on the way goes to the notes."""
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.mission.lint import Firmware
+    from gcs_windplan.mission.firmware import firmware_of
 
     pilot = autopilot or mission.autopilot
     if pilot is None:
@@ -96,13 +97,13 @@ def _firmware(
     if kind is None:
         notes.append("for which kind of vehicle is not said: only what all have in common was looked for; say it with "
                      "--vehicle-type")  # fmt: skip
-    return Firmware(pilot, kind)
+    return firmware_of(pilot, kind)
 
 
 def _print(file: Path, firmware: Firmware, items: int, findings: tuple[FirmwareFinding, ...]) -> None:
-    from gcs_windplan.mission.lint import told
+    from gcs_windplan.mission.lint import finding_lines
 
-    for line in told(findings):
+    for line in finding_lines(findings):
         typer.echo(f"{line.effect:<8}  {line.line}")
     head = f"{file.name} for {firmware.full_name}"
     if not findings:

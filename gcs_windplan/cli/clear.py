@@ -9,8 +9,8 @@ import typer
 from gcs_windplan.cli import linking
 
 if TYPE_CHECKING:
-    from gcs_windplan.link.verified import Part
-    from gcs_windplan.link.wire import MissionType
+    from gcs_windplan.link.verified import TransferPart
+    from gcs_windplan.mission.firmware import MissionType
 
 HELP = "Delete a vehicle's mission, fence or rally points, and read back that nothing is left (but ArduPilot's home)."
 
@@ -29,7 +29,7 @@ def clear(
 ) -> None:
     """Delete type after type, until one is not accepted."""
     wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
-    parts: list[Part] = []
+    parts: list[TransferPart] = []
     with linking.answering("clear", as_json), linking.vehicle(on, sysid, compid, sign, timeout) as (session, peer):
         from gcs_windplan.link.verified import clear_items
 

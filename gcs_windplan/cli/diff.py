@@ -80,8 +80,10 @@ def _compared(
     vehicle_type: Literal["multicopter", "fixed-wing"] | None,
 ) -> Comparison:
     from gcs_windplan.link.comparison import compare_either_way
+    from gcs_windplan.mission.firmware import known_firmware
 
-    return compare_either_way(ours, theirs, mission_type=kind, autopilot=autopilot, vehicle_type=vehicle_type)
+    firmware = known_firmware(autopilot, vehicle_type)
+    return compare_either_way(ours, theirs, mission_type=kind, firmware=firmware)
 
 
 def _with_home(comparison: Comparison, first: Mission, second: Mission) -> Comparison:
@@ -121,12 +123,13 @@ def _report(comparisons: dict[str, Comparison], firmware: Autopilot | None, as_j
 
 def _print(comparisons: dict[str, Comparison], firmware: Autopilot | None, same: bool) -> None:
     from gcs_windplan.link.comparison import loss_lines
+    from gcs_windplan.mission.firmware import known_firmware
 
     for kind, comparison in comparisons.items():
         for difference in comparison.differences:
             typer.echo(f"{kind}: {difference}")
     for kind, comparison in comparisons.items():
-        for line in loss_lines(comparison.losses, firmware):
+        for line in loss_lines(comparison.losses, known_firmware(firmware)):
             typer.echo(f"{kind}: {line}")
     if same:
         typer.echo("the same")

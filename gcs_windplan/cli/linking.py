@@ -15,9 +15,9 @@ from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedErro
 
 if TYPE_CHECKING:
     from gcs_windplan.link.peer import Peer
-    from gcs_windplan.link.session import Session, Watch
-    from gcs_windplan.link.verified import Part
-    from gcs_windplan.link.wire import MissionType
+    from gcs_windplan.link.session import ProgressCallback, Session
+    from gcs_windplan.link.verified import TransferPart
+    from gcs_windplan.mission.firmware import MissionType
 
 EPILOG = (
     "ADDRESS is udpin:HOST:PORT (listen; the way simulators and most autopilots call in), udpout:HOST:PORT, "
@@ -87,7 +87,7 @@ def vehicle(
 
 
 @contextmanager
-def progress(label: str, quiet: bool) -> Iterator[Watch | None]:
+def progress(label: str, quiet: bool) -> Iterator[ProgressCallback | None]:
     """A bar on the terminal, None where standard error is none."""
     if quiet or not sys.stderr.isatty():
         yield None
@@ -105,14 +105,14 @@ def note(text: str) -> None:
     typer.echo(f"note: {text}", err=True)
 
 
-def verdict_of(parts: Sequence[Part]) -> str:
+def verdict_of(parts: Sequence[TransferPart]) -> str:
     """The verdict on all parts: unknown if one is, else rejected if one is."""
     verdicts = {part.outcome.verdict for part in parts}
     return next(verdict for verdict in ("unknown", "rejected", "accepted") if verdict in verdicts)
 
 
 def report(
-    parts: Sequence[Part],
+    parts: Sequence[TransferPart],
     skipped: Sequence[MissionType],
     peer: Peer,
     verb: str,
@@ -153,7 +153,7 @@ def described_peer(peer: Peer) -> dict[str, Any]:
     }
 
 
-def _described(part: Part) -> dict[str, Any]:
+def _described(part: TransferPart) -> dict[str, Any]:
     outcome, comparison = part.outcome, part.comparison
     described: dict[str, Any] = {
         "type": part.mission_type,
@@ -174,7 +174,7 @@ def _described(part: Part) -> dict[str, Any]:
     return described
 
 
-def _print(part: Part, peer: Peer, as_json: bool) -> None:
+def _print(part: TransferPart, peer: Peer, as_json: bool) -> None:
     outcome = part.outcome
     if outcome.verdict != "accepted":
         typer.echo(f"error: {part.mission_type} {outcome.verdict}: {outcome.message}", err=True)
@@ -184,11 +184,11 @@ def _print(part: Part, peer: Peer, as_json: bool) -> None:
         if part.comparison is not None:
             from gcs_windplan.link.comparison import loss_lines
 
-            for line in loss_lines(part.comparison.losses, peer.autopilot):
+            for line in loss_lines(part.comparison.losses, peer.firmware):
                 typer.echo(f"  {line}")
     for line in outcome.notes:
         note(line)
 
 
-def _times(part: Part) -> str:
+def _times(part: TransferPart) -> str:
     return f"sent in {part.sending:.2f} s, {part.seconds:.2f} s with reading back"

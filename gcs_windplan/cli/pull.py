@@ -13,9 +13,9 @@ from gcs_windplan.cli import linking
 if TYPE_CHECKING:
     from gcs_windplan.link.peer import Peer
     from gcs_windplan.link.session import Session
-    from gcs_windplan.link.verified import Part
-    from gcs_windplan.link.wire import MissionType
+    from gcs_windplan.link.verified import TransferPart
     from gcs_windplan.mission import Home, Mission
+    from gcs_windplan.mission.firmware import MissionType
 
 HELP = """Pull a vehicle's mission into a .plan or .waypoints file.
 
@@ -88,12 +88,14 @@ def _refuse_unwritable(output: Path) -> None:
         raise FormatError(Problem(problem, file=output))
 
 
-def _pull(session: Session, peer: Peer, wanted: tuple[MissionType, ...], optional: bool, as_json: bool) -> list[Part]:
+def _pull(
+    session: Session, peer: Peer, wanted: tuple[MissionType, ...], optional: bool, as_json: bool
+) -> list[TransferPart]:
     """Read type after type, until one fails; a vehicle that has no fence or rally points at all is no failure."""
     from gcs_windplan.link.outcome import UNSUPPORTED
     from gcs_windplan.link.verified import pull_items
 
-    parts: list[Part] = []
+    parts: list[TransferPart] = []
     for kind in wanted:
         with linking.progress(f"{kind} of {peer.ident}", as_json) as watch:
             part = pull_items(session, peer, kind, watch=watch)
@@ -107,14 +109,14 @@ def _pull(session: Session, peer: Peer, wanted: tuple[MissionType, ...], optiona
     return parts
 
 
-def _assembled(session: Session, peer: Peer, parts: list[Part]) -> Mission:
+def _assembled(session: Session, peer: Peer, parts: list[TransferPart]) -> Mission:
     """One mission of all parts, with a home, as both formats need one."""
     from gcs_windplan.errors import InputError, LinkError, RefusedError
     from gcs_windplan.link.firmware import incoming_mission, with_fence, with_rally
 
     items = {part.mission_type: part.items for part in parts}
     try:
-        mission = incoming_mission(items.get("mission", ()), peer.autopilot, peer.vehicle_type)
+        mission = incoming_mission(items.get("mission", ()), peer.firmware, peer.vehicle_type)
         mission = with_rally(with_fence(mission, items.get("fence", ())), items.get("rally", ()))
     except InputError as error:
         raise LinkError(f"what the vehicle holds makes no sense: {error}") from error
@@ -152,7 +154,7 @@ def _write(mission: Mission, output: Path) -> None:
     (write_plan if output.suffix.lower() == ".plan" else write_waypoints)(mission, output)
 
 
-def _report(mission: Mission, parts: list[Part], peer: Peer, output: Path, as_json: bool) -> None:
+def _report(mission: Mission, parts: list[TransferPart], peer: Peer, output: Path, as_json: bool) -> None:
     counts = {part.mission_type: len(part.items) for part in parts}
     counts["mission"] = len(mission.items)
     if as_json:

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from gcs_windplan.link.home import Homes
     from gcs_windplan.link.peer import Peer
     from gcs_windplan.link.session import Session
-    from gcs_windplan.link.verified import Part
-    from gcs_windplan.link.wire import MissionType
+    from gcs_windplan.link.verified import TransferPart
     from gcs_windplan.mission import Mission
+    from gcs_windplan.mission.firmware import MissionType
 
 HELP = """Push a mission to a vehicle, read it back and compare.
 
@@ -117,14 +117,14 @@ def _note_kind(mission: Mission, peer: Peer, file: Path) -> None:
 
 def _push(
     session: Session, peer: Peer, mission: Mission, wanted: tuple[MissionType, ...], verify: bool, as_json: bool
-) -> list[Part]:
+) -> list[TransferPart]:
     """Push type after type, until one is not accepted."""
     from gcs_windplan.link.firmware import outgoing_items
     from gcs_windplan.link.verified import push_items
 
-    parts: list[Part] = []
+    parts: list[TransferPart] = []
     for kind in wanted:
-        items = outgoing_items(mission, kind, peer.autopilot)
+        items = outgoing_items(mission, kind, peer.firmware)
         with linking.progress(f"{kind} to {peer.ident}", as_json) as watch:
             parts.append(push_items(session, peer, kind, items, verify=verify, watch=watch))
         if parts[-1].outcome.verdict != "accepted":
@@ -132,7 +132,7 @@ def _push(
     return parts
 
 
-def _homes(session: Session, peer: Peer, mission: Mission, parts: list[Part]) -> Homes | None:
+def _homes(session: Session, peer: Peer, mission: Mission, parts: list[TransferPart]) -> Homes | None:
     """The file's home and the vehicle's, None where one is not known or no altitude counts from it."""
     from gcs_windplan.link.home import Homes, counts_from_home
 

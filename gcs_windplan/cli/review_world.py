@@ -16,12 +16,11 @@ if TYPE_CHECKING:
     from gcs_windplan.geo.frame import GeoPoint, LocalFrame
     from gcs_windplan.mission import Home, Mission
     from gcs_windplan.terrain import Extent, Terrain
-    from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
+    from gcs_windplan.vehicle import Airframe, Autopilot, MotionProfile, VehicleType
     from gcs_windplan.wind import WindField
 
 _FARTHEST: Final = 300_000.0  # [m] from the first place: the local frame's distances are good to some metres over it
 _SPARE: Final = 1000.0  # [m] of ground and wind around the mission
-_CRUISE: Final = {"ardupilot": 12.0, "px4": 15.0}  # [m/s] AIRSPEED_CRUISE and FW_AIRSPD_TRIM, their defaults
 _NEEDED: Final = (
     "is needed to judge a mission file: heights from a GeoTIFF or SRTM tile (--terrain dem.tif), sample:jacksboro, or"
     " flat:ALTITUDE; or --by MISSION.yaml takes the world of a mission file"
@@ -203,11 +202,13 @@ def _vehicle_of(
     return autopilot, kind, remarks
 
 
-def _unknown_vehicle(kind: VehicleType, autopilot: Autopilot, pace: Pace) -> str:
+def _unknown_vehicle(kind: VehicleType, autopilot: Autopilot, pace: MotionProfile) -> str:
     """What is said where no airframe is known."""
     if kind == "fixed-wing":
         return "no --vehicle was given: energy is not known, and it cruises at the mission's or its autopilot's speed"
-    who = "ArduCopter" if autopilot == "ardupilot" else "PX4"
+    from gcs_windplan.mission.firmware import firmware_of
+
+    who = firmware_of(autopilot, "multicopter").name
     return (
         f"no --vehicle was given: energy is not known, and the vehicle is taken to reach {pace.airspeed:g} m/s through"
         f" the air ({who}'s default lean)"
@@ -243,11 +244,11 @@ def _is_speed(text: str) -> bool:
     return True
 
 
-def _pace(autopilot: Autopilot, airframe: Airframe | None) -> Pace:
+def _pace(autopilot: Autopilot, airframe: Airframe | None) -> MotionProfile:
     from gcs_windplan.assessment.planned import pace_with_rates
-    from gcs_windplan.flight.duration import pace_of
+    from gcs_windplan.mission.firmware import firmware_of
 
-    pace = pace_of(autopilot)
+    pace = firmware_of(autopilot).motion
     if airframe is None:
         return pace
     return pace_with_rates(replace(pace, airspeed=airframe.maximum_airspeed), airframe.vehicle)
@@ -255,9 +256,11 @@ def _pace(autopilot: Autopilot, airframe: Airframe | None) -> Pace:
 
 def _cruise(mission: Mission, airframe: Airframe | None, autopilot: Autopilot) -> float:
     """The airspeed of a fixed-wing [m/s]."""
+    from gcs_windplan.mission.firmware import firmware_of
+
     if airframe is not None:
         return airframe.vehicle.airspeed
-    return _CRUISE[autopilot] if mission.cruise_speed is None else mission.cruise_speed
+    return firmware_of(autopilot).cruise if mission.cruise_speed is None else mission.cruise_speed
 
 
 def _own_limits(airframe: Airframe | None) -> Limits:

@@ -50,7 +50,10 @@ def vehicle(
         typer.Option(metavar="SPEED@FROM", help="A constant wind, such as 5@270 or '12 kt@300', in m/s and degrees."),
     ] = None,
     airspeed: Annotated[
-        str | None, typer.Option(metavar="SPEED", help="The most that it flies through the air; default 15 m/s.")
+        str | None,
+        typer.Option(
+            metavar="SPEED", help="The most that it flies through the air; default: what its default lean gives."
+        ),
     ] = None,
     home: Annotated[
         str | None,
@@ -109,7 +112,7 @@ def _serve(options: StandInOptions, transport: Transport, listen: str, key: byte
     from gcs_windplan.errors import LinkError
     from gcs_windplan.link.codec import Codec
     from gcs_windplan.standin.service import serve
-    from gcs_windplan.standin.vehicle import StandIn
+    from gcs_windplan.standin.standin import StandIn
 
     began = time.monotonic()
 
@@ -119,7 +122,7 @@ def _serve(options: StandInOptions, transport: Transport, listen: str, key: byte
     codec = Codec(options.server.system, options.server.component, key)
     codec.version = 1 if options.server.mavlink1 else 2
     vehicle = StandIn(options, time.monotonic(), say)
-    rules, system = {"ardupilot": "ArduCopter", "px4": "PX4"}[options.autopilot], options.server.system
+    rules, system = options.firmware.name, options.server.system
     say(f"a stand-in, no real vehicle and no simulator: system {system}, {rules}'s mission rules, {listen}")
     home, wind = options.world.home, options.world.wind
     say(f"it stands at {home.point}, {home.altitude:.1f} m; wind: {wind.name}; speed-up {options.speedup:g}")
@@ -143,18 +146,19 @@ def _options(
     """What the command line and the mission file make together."""
     from dataclasses import replace
 
-    from gcs_windplan.standin.airframe import airframe_of
-    from gcs_windplan.standin.vehicle import StandInOptions
+    from gcs_windplan.mission.firmware import firmware_of
+    from gcs_windplan.standin.vehicle import StandInOptions, planned_profile
     from gcs_windplan.standin.world import planned_world, simulator_world, world_at
 
+    firmware = firmware_of(autopilot, "multicopter")
     if request is not None:
         world = planned_world(request, home, wind)
     else:
-        world = world_at(home, wind) if home is not None else simulator_world(autopilot, wind)
-    airframe = airframe_of(autopilot, request.vehicle if request is not None else None)
+        world = world_at(home, wind) if home is not None else simulator_world(firmware, wind)
+    profile = planned_profile(firmware, request.vehicle if request is not None else None)
     if airspeed is not None:
-        airframe = replace(airframe, airspeed=airspeed)
-    return StandInOptions(autopilot, airframe, world, **told)
+        profile = replace(profile, airspeed=airspeed)
+    return StandInOptions(firmware, profile, world, **told)
 
 
 def _request(mission: Path | None) -> Request | None:
@@ -167,12 +171,13 @@ def _request(mission: Path | None) -> Request | None:
 
 def _autopilot(name: str | None, request: Request | None) -> Autopilot:
     from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.mission.firmware import autopilots
 
     if name is None:
         return request.vehicle.autopilot if request is not None else "ardupilot"
-    if name not in ("ardupilot", "px4"):
-        raise InputError(Problem(f"{name!r} is none of ardupilot, px4", "--autopilot"))
-    return name  # type: ignore[return-value]
+    if name not in autopilots():
+        raise InputError(Problem(f"{name!r} is none of {', '.join(autopilots())}", "--autopilot"))
+    return name
 
 
 def _wind(text: str | None) -> WindField | None:

@@ -16,13 +16,11 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission.items import Mission
+from gcs_windplan.mission.firmware import flying_firmware
+from gcs_windplan.mission.mission import Mission
 from gcs_windplan.mission.path import Course, Move, Place, course_of
 from gcs_windplan.vehicle import (
-    ARDUCOPTER_PACE,
-    PX4_PACE,
-    Autopilot,
-    Pace,
+    MotionProfile,
     as_flown,
     landing_seconds,
     return_seconds,
@@ -33,7 +31,6 @@ from gcs_windplan.vehicle import (
 #: AMSL [m]. For a wind field in home's frame: `lambda starts, ends: field.at((starts + ends) / 2)`.
 WindAlong: TypeAlias = Callable[[FloatArray, FloatArray], FloatArray]
 
-_CIRCLE_RATE: Final = math.radians(20.0)  # [rad/s] CIRCLE_RATE, ArduCopter's default
 _INWARDS: Final = 0.5  # of the acceleration that a circle may take: AC_Circle.cpp, calc_velocities
 
 
@@ -81,7 +78,7 @@ class MissionDuration:
         return self.takeoff + self.en_route + self.ending
 
 
-def duration_of(mission: Mission, wind: WindAlong | None = None, pace: Pace | None = None) -> MissionDuration:
+def duration_of(mission: Mission, wind: WindAlong | None = None, pace: MotionProfile | None = None) -> MissionDuration:
     """How long the mission's autopilot takes for it, from arming at home on.
 
     `pace` is by default that of the mission's autopilot with its default parameters, ArduPilot's where it names none.
@@ -90,7 +87,7 @@ def duration_of(mission: Mission, wind: WindAlong | None = None, pace: Pace | No
     """
     if mission.home is not None and mission.vehicle_type == "fixed-wing":
         raise InputError("how long a fixed-wing takes for a mission is not known, only a multicopter's time is")
-    pace = pace_of(mission.autopilot) if pace is None else pace
+    pace = flying_firmware(mission.autopilot).motion if pace is None else pace
     course = course_of(mission)
     times = time_course(course, _winds(course.moves, wind), pace)
     takeoff = math.fsum(s for move, s in zip(course.moves, times.seconds, strict=True) if move.kind == "take-off")
@@ -98,11 +95,6 @@ def duration_of(mission: Mission, wind: WindAlong | None = None, pace: Pace | No
         s for move, s in zip(course.moves, times.seconds, strict=True) if move.kind in ("landing", "return")
     )
     return MissionDuration(takeoff, tuple(_legs(course, times, pace)), ending, times.losses, course.remarks)
-
-
-def pace_of(autopilot: Autopilot | None) -> Pace:
-    """The pace of an autopilot with its default parameters, ArduPilot's where none is named."""
-    return PX4_PACE if autopilot == "px4" else ARDUCOPTER_PACE
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +110,7 @@ class CourseTimes:
     losses: float
 
 
-def time_course(course: Course, winds: FloatArray, pace: Pace) -> CourseTimes:
+def time_course(course: Course, winds: FloatArray, pace: MotionProfile) -> CourseTimes:
     """Time the moves in their mean winds (n, 3) [m/s]; a return's is that on the way home."""
     seconds, peaks, losses, first = np.zeros(len(course.moves)), np.zeros(len(course.moves)), 0.0, 0
     for kind, group in groupby(course.moves, key=lambda move: move.kind):
@@ -134,21 +126,21 @@ def time_course(course: Course, winds: FloatArray, pace: Pace) -> CourseTimes:
     return CourseTimes(seconds, peaks, losses)
 
 
-def circling_speed(move: Move, pace: Pace) -> float:
-    """The speed [m/s] of a multicopter on its circles: AC_Circle.cpp, calc_velocities, with the default CIRCLE_RATE.
+def circling_speed(move: Move, pace: MotionProfile) -> float:
+    """The speed [m/s] of a multicopter on its circles: AC_Circle.cpp, calc_velocities, ArduCopter's.
 
-    As commanded, but at most CIRCLE_RATE round the middle, and with half of the acceleration towards it.
+    As commanded, but at most at the profile's rate round the middle, and with half of the acceleration towards it.
     """
     told = pace.speed if move.told.ground is None else move.told.ground
-    return min(told, _CIRCLE_RATE * move.radius, math.sqrt(_INWARDS * pace.acceleration * move.radius))
+    return min(told, pace.circle_rate * move.radius, math.sqrt(_INWARDS * pace.acceleration * move.radius))
 
 
-def circling_seconds(move: Move, pace: Pace) -> float:
+def circling_seconds(move: Move, pace: MotionProfile) -> float:
     """How long a multicopter flies in circles at the end of a move [s]."""
     return move.circling / circling_speed(move, pace) if move.circling > 0 else 0.0
 
 
-def _legs_flown(moves: Sequence[Move], winds: FloatArray, pace: Pace) -> CourseTimes:
+def _legs_flown(moves: Sequence[Move], winds: FloatArray, pace: MotionProfile) -> CourseTimes:
     """Legs one after the other, from rest to rest."""
     told = [move.told for move in moves]
     times = as_flown(
@@ -156,7 +148,7 @@ def _legs_flown(moves: Sequence[Move], winds: FloatArray, pace: Pace) -> CourseT
         np.array([pace.speed if one.ground is None else one.ground for one in told]),
         np.array([0.0, *(move.hold + circling_seconds(move, pace) for move in moves)]),
         winds,
-        pace,
+        pace=pace,
         climbs=np.array([pace.climb if one.climb is None else one.climb for one in told]),
         descents=np.array([pace.descent if one.descent is None else one.descent for one in told]),
         stops=[*(move.rests for move in moves), True],
@@ -164,7 +156,7 @@ def _legs_flown(moves: Sequence[Move], winds: FloatArray, pace: Pace) -> CourseT
     return CourseTimes(times.seconds, times.peaks, math.fsum(times.losses))
 
 
-def _upright(move: Move, wind: FloatArray, pace: Pace) -> float:
+def _upright(move: Move, wind: FloatArray, pace: MotionProfile) -> float:
     """A take-off, a landing or a return [s]."""
     (e0, n0, z0), (e1, n1, z1) = move.start, move.end
     if move.kind == "take-off":
@@ -183,7 +175,7 @@ def _winds(moves: Sequence[Move], wind: WindAlong | None) -> FloatArray:
     return np.asarray(wind(starts, ends), dtype=np.float64)
 
 
-def _legs(course: Course, times: CourseTimes, pace: Pace) -> Iterator[FlownLeg]:
+def _legs(course: Course, times: CourseTimes, pace: MotionProfile) -> Iterator[FlownLeg]:
     for move, seconds, peak in zip(course.moves, times.seconds, times.peaks, strict=True):
         if move.kind == "leg":
             commanded = pace.speed if move.told.ground is None else move.told.ground

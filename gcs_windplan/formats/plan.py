@@ -37,12 +37,9 @@ from gcs_windplan.mission import (
     plain_frame,
     takes_place,
 )
+from gcs_windplan.mission.firmware import autopilot_of, firmware_of
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
-_FIRMWARES: dict[Autopilot, int] = {
-    "ardupilot": mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
-    "px4": mavlink.MAV_AUTOPILOT_PX4,
-}
 _VEHICLES: dict[VehicleType, int] = {
     "multicopter": mavlink.MAV_TYPE_QUADROTOR,
     "fixed-wing": mavlink.MAV_TYPE_FIXED_WING,
@@ -82,7 +79,7 @@ def _mission_object(mission: Mission, home: Home) -> dict[str, Any]:
     place = json_place(home.point.latitude_deg, home.point.longitude_deg, home.altitude)
     speeds = {"cruiseSpeed": mission.cruise_speed, "hoverSpeed": mission.hover_speed}
     return {
-        "firmwareType": 0 if mission.autopilot is None else _FIRMWARES[mission.autopilot],
+        "firmwareType": 0 if mission.autopilot is None else firmware_of(mission.autopilot).mav_autopilot,
         "globalPlanAltitudeMode": _common_altitude_mode(mission),
         "items": [_item_object(item, number) for number, item in enumerate(mission.items, start=1)],
         "plannedHomePosition": place,
@@ -255,11 +252,10 @@ def _home(node: Node, repairs: Repairs) -> Home | None:
 
 def _autopilot(node: Node, repairs: Repairs) -> Autopilot | None:
     firmware = node.whole() if node.present else 0
-    for autopilot, number in _FIRMWARES.items():
-        if firmware == number:
-            return autopilot
-    repairs.add(f"firmwareType {firmware} is neither ArduPilot nor PX4; the autopilot is unknown")
-    return None
+    autopilot = autopilot_of(firmware)
+    if autopilot is None:
+        repairs.add(f"firmwareType {firmware} is neither ArduPilot nor PX4; the autopilot is unknown")
+    return autopilot
 
 
 def _vehicle_type(node: Node, repairs: Repairs) -> VehicleType | None:

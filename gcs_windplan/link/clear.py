@@ -21,7 +21,7 @@ class Clear(Exchange):
     def __init__(self, ends: Ends, contact: Contact | None = None) -> None:
         super().__init__(ends, _LIMIT, contact)
         self._sends = 0
-        self._handlers = {"MISSION_ACK": self._hear_ack}
+        self._handlers = {"MISSION_ACK": self._handle_ack}
 
     @property
     def progress(self) -> tuple[int, int]:
@@ -38,7 +38,7 @@ class Clear(Exchange):
             return self._begin(now)
         return self._quiet(now, "no-answer", f"the vehicle did not answer {SENDS} requests to clear")
 
-    def _hear_ack(self, message: Message, now: float) -> list[Message]:
+    def _handle_ack(self, message: Message, now: float) -> list[Message]:
         if message.type == ACCEPTED:
             return self._finish(Outcome("accepted", "done", "the vehicle accepted"))
         return self._finish(refusal(message.type))

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from gcs_windplan.link.wire import MissionType
 from gcs_windplan.mission import (
     Frame,
     MissionItem,
@@ -21,33 +20,25 @@ from gcs_windplan.mission import (
     scales_place,
     takes_place,
 )
-from gcs_windplan.mission.kept import (
-    CENTIMETRE,
-    Fate,
-    cut_rule,
-    float_text,
-    is_listed,
-    keeps_altitude,
-    parameter_rules,
-    same_float,
-)
-from gcs_windplan.vehicle import Autopilot, VehicleType
+from gcs_windplan.mission.firmware import CommandRule, Firmware, MissionType, Retention, stores
+from gcs_windplan.mission.firmware.floats import float_text, same_float
+from gcs_windplan.mission.firmware.storage import FLOAT
 
-_METRE = 1.0  # [m] ArduPilot's rally points before 4.6
+_NOTHING = stores()  # of a rally point's parameters
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
     """One number that is not as it was sent; `seq` counts from 0, None for the number of items.
 
-    A `trifle` is a loss that changes nothing: less than a centimetre, or a frame that no number refers to.
+    One that is `rounded` is a loss that changes nothing: less than a centimetre, or a frame that no number refers to.
     """
 
     seq: int | None
     field: str
     sent: str
     held: str
-    trifle: bool = False
+    rounded: bool = False
 
     def __str__(self) -> str:
         place = "" if self.seq is None else f"item {self.seq}: "
@@ -72,24 +63,23 @@ def compare_items(
     held: Sequence[MissionItem],
     *,
     mission_type: MissionType = "mission",
-    autopilot: Autopilot | None = None,
-    vehicle_type: VehicleType | None = None,
+    firmware: Firmware | None = None,
     first: int = 0,
 ) -> Comparison:
     """Compare what was sent with what the vehicle holds, neither with home; `first` is the first item's number.
 
-    For an autopilot of None every number must be the same as a float of 32 bits.
+    Without a firmware every number must be the same as a float of 32 bits.
     """
-    rules = _Rules(mission_type, autopilot, vehicle_type)
+    rules = _Rules(mission_type, firmware)
     differences: list[Difference] = []
     losses: list[Difference] = []
     if len(sent) != len(held):
         differences.append(Difference(None, "the number of items", str(len(sent)), str(len(held))))
     for seq, (ours, theirs) in enumerate(zip(sent, held, strict=False), start=first):
-        for field, value, kept, fate in rules.fates(ours, theirs):
-            if fate != "same":
-                found = Difference(seq, field, value, kept, trifle=fate == "trifle")
-                (differences if fate == "differs" else losses).append(found)
+        for field, value, back, retention in rules.fields(ours, theirs):
+            if retention != "same":
+                found = Difference(seq, field, value, back, rounded=retention == "rounded")
+                (differences if retention == "differs" else losses).append(found)
     return Comparison(tuple(differences), tuple(losses))
 
 
@@ -98,16 +88,13 @@ def compare_either_way(
     other: Sequence[MissionItem],
     *,
     mission_type: MissionType = "mission",
-    autopilot: Autopilot | None = None,
-    vehicle_type: VehicleType | None = None,
+    firmware: Firmware | None = None,
     first: int = 1,
 ) -> Comparison:
     """Compare two lists of which either may be what a vehicle made of the other; the closer reading counts."""
 
     def compare(sent: Sequence[MissionItem], held: Sequence[MissionItem]) -> Comparison:
-        return compare_items(
-            sent, held, mission_type=mission_type, autopilot=autopilot, vehicle_type=vehicle_type, first=first
-        )
+        return compare_items(sent, held, mission_type=mission_type, firmware=firmware, first=first)
 
     there, back = compare(one, other), _turned(compare(other, one))
     return min(there, back, key=_weight)
@@ -126,25 +113,23 @@ def _turned(comparison: Comparison) -> Comparison:
     return Comparison(tuple(map(turn, comparison.differences)), tuple(map(turn, comparison.losses)))
 
 
-def loss_lines(losses: Sequence[Difference], autopilot: Autopilot | None) -> tuple[str, ...]:
-    """The losses in words: trifles counted, all others said, those alike in one line."""
-    firmware = {"ardupilot": "ArduPilot", "px4": "PX4", None: "the firmware"}[autopilot]
-    trifles = [loss for loss in losses if loss.trifle]
-    frames = sum(loss.field == "frame" for loss in trifles)
-    heights = len(trifles) - frames
+def loss_lines(losses: Sequence[Difference], firmware: Firmware | None) -> tuple[str, ...]:
+    """The losses in words: what was rounded counted, all others said, those alike in one line."""
+    name = "the firmware" if firmware is None else firmware.family
+    rounded = [loss for loss in losses if loss.rounded]
+    frames = sum(loss.field == "frame" for loss in rounded)
+    heights = len(rounded) - frames
     lines = []
     if heights:
-        lines.append(
-            f"{_counted(heights, 'altitude differs', 'altitudes differ')} by less than {firmware}'s centimetre"
-        )
+        lines.append(f"{_counted(heights, 'altitude differs', 'altitudes differ')} by less than {name}'s centimetre")
     if frames:
         lines.append(f"{_counted(frames, 'frame differs', 'frames differ')} that no altitude refers to")
     alike: dict[tuple[str, str, str], list[int]] = {}
     for loss in losses:
-        if not loss.trifle:
+        if not loss.rounded:
             alike.setdefault((loss.field, loss.sent, loss.held), []).append(-1 if loss.seq is None else loss.seq)
     for (field, sent, held), seqs in alike.items():
-        lines.append(f"not kept by {firmware}: {field} {sent} became {held} ({_numbered(seqs)})")
+        lines.append(f"not kept by {name}: {field} {sent} became {held} ({_numbered(seqs)})")
     return tuple(lines)
 
 
@@ -169,48 +154,59 @@ class _Rules:
     """What becomes of an item's numbers, by mission type and firmware."""
 
     mission_type: MissionType
-    autopilot: Autopilot | None
-    vehicle_type: VehicleType | None
+    firmware: Firmware | None
 
-    def fates(self, sent: MissionItem, held: MissionItem) -> Iterator[tuple[str, str, str, Fate]]:
-        """Each field with its value sent, its value held, and its fate."""
+    def fields(self, sent: MissionItem, held: MissionItem) -> Iterator[tuple[str, str, str, Retention]]:
+        """Each field with its value sent, its value held, and what became of it."""
         if sent.command != held.command:
             yield "command", command_name(sent.command), command_name(held.command), "differs"
             return
         yield "frame", frame_name(sent.frame), frame_name(held.frame), self._frame(sent, held)
-        rules = parameter_rules(sent.command, self.autopilot, self.vehicle_type)
+        rule = self._rule(sent)
+        ways = (FLOAT,) * 7 if rule is None else rule.params
         count = 4 if self._is_place(sent, held) else 7
-        numbers = zip(rules, _parameters(sent), _parameters(held), strict=True)
-        for number, (rule, ours, theirs) in enumerate(numbers, start=1):
+        numbers = zip(ways, _parameters(sent), _parameters(held), strict=True)
+        for number, (way, ours, theirs) in enumerate(numbers, start=1):
             if number <= count:
-                yield f"parameter {number}", float_text(ours), float_text(theirs), rule(ours, theirs)
+                yield f"parameter {number}", float_text(ours), float_text(theirs), way.retention(ours, theirs)
         if count == 4:
             yield from self._place(sent, held)
         if self.mission_type == "mission":
-            fate: Fate = "lost" if self.autopilot == "ardupilot" else "differs"
+            stored = self.firmware is None or self.firmware.stores_autocontinue
             same = sent.autocontinue == held.autocontinue
-            yield "autocontinue", str(sent.autocontinue), str(held.autocontinue), "same" if same else fate
+            retention: Retention = "same" if same else "differs" if stored else "lost"
+            yield "autocontinue", str(sent.autocontinue), str(held.autocontinue), retention
+
+    def _rule(self, item: MissionItem) -> CommandRule | None:
+        """The rule of an item; None for a firmware or a command that nothing is known of."""
+        if self.firmware is None:
+            return None
+        if self.mission_type == "mission":
+            return self.firmware.rule(item.command, item.frame) or self.firmware.rule(item.command)
+        return self.firmware.fence.get(item.command, _NOTHING if self.mission_type == "rally" else None)
 
     def _is_place(self, sent: MissionItem, held: MissionItem) -> bool:
         """Whether parameters 5 to 7 are a place, or travel as one and nobody knows better."""
         if takes_place(sent.command):
             return True
         travels = scales_place(sent.command, sent.frame) or scales_place(held.command, held.frame)
-        return travels and not is_listed(sent.command, self.autopilot)
+        return travels and self._rule(sent) is None
 
-    def _frame(self, sent: MissionItem, held: MissionItem) -> Fate:
+    def _frame(self, sent: MissionItem, held: MissionItem) -> Retention:
         ours, theirs = plain_frame(sent.frame), plain_frame(held.frame)
         if ours == theirs or self.mission_type == "fence":
             return "same"  # a fence has no heights
         if not takes_place(sent.command):
-            refers = self._is_place(sent, held) or keeps_altitude(sent.command, self.autopilot)
+            rule = self._rule(sent)
+            refers = self._is_place(sent, held) or (rule is not None and rule.place)
             if not refers or not any((*_parameters(sent)[4:], *_parameters(held)[4:])):
                 return "same"  # without a place there is nothing to refer to
-        if self.autopilot == "ardupilot" and (ours, theirs) == (Frame.MISSION, Frame.GLOBAL) and sent.altitude == 0:
-            return "trifle"
+        taken_as_global = self.firmware is not None and self.firmware.placeless is None
+        if taken_as_global and (ours, theirs) == (Frame.MISSION, Frame.GLOBAL) and sent.altitude == 0:
+            return "rounded"
         return "differs"
 
-    def _place(self, sent: MissionItem, held: MissionItem) -> Iterator[tuple[str, str, str, Fate]]:
+    def _place(self, sent: MissionItem, held: MissionItem) -> Iterator[tuple[str, str, str, Retention]]:
         for name, a, b in (
             ("latitude", sent.latitude_deg, held.latitude_deg),
             ("longitude", sent.longitude_deg, held.longitude_deg),
@@ -223,16 +219,17 @@ class _Rules:
             self._altitude(sent.altitude, held.altitude),
         )
 
-    def _altitude(self, sent: float, held: float) -> Fate:
+    def _altitude(self, sent: float, held: float) -> Retention:
         if same_float(sent, held):
             return "same"
         if self.mission_type == "fence":
             return "lost" if held == 0 else "differs"
-        if self.autopilot != "ardupilot":
+        if self.firmware is None:
             return "differs"
-        if cut_rule(CENTIMETRE)(sent, held) == "lost":
-            return "trifle"
-        return cut_rule(_METRE)(sent, held) if self.mission_type == "rally" else "differs"
+        stored = self.firmware.altitude.retention(sent, held)
+        if stored == "differs" and self.mission_type == "rally":
+            return self.firmware.rally.retention(sent, held)  # newer ones have the missions' precision
+        return stored
 
 
 def _parameters(item: MissionItem) -> tuple[float, ...]:

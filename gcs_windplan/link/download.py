@@ -43,9 +43,9 @@ class Download(Exchange):
         self._retry = _ITEM_RETRY
         self._first_asked = 0.0
         self._handlers = {
-            "MISSION_COUNT": self._hear_count,
-            "MISSION_ITEM_INT": self._hear_item,
-            "MISSION_ACK": self._hear_ack,
+            "MISSION_COUNT": self._handle_count,
+            "MISSION_ITEM_INT": self._handle_item,
+            "MISSION_ACK": self._handle_ack,
         }
 
     @property
@@ -86,7 +86,7 @@ class Download(Exchange):
         got, count = self.progress
         return self._quiet(now, "stalled", f"the vehicle stopped answering after {got} of {count} items")
 
-    def _hear_count(self, message: Message, now: float) -> list[Message]:
+    def _handle_count(self, message: Message, now: float) -> list[Message]:
         if self._count is not None and message.count != self._count:
             return self._fail("changed", f"the vehicle held {self._count} items, and now {message.count}")
         if self._phase != "listing":
@@ -99,7 +99,7 @@ class Download(Exchange):
         self._phase = "fetching"
         return self._next(now)
 
-    def _hear_item(self, message: Message, now: float) -> list[Message]:
+    def _handle_item(self, message: Message, now: float) -> list[Message]:
         if self._phase != "fetching" or message.seq != len(self._messages):
             return []
         self._messages.append(message)
@@ -119,7 +119,7 @@ class Download(Exchange):
         self._finish(Outcome("accepted", "done", f"the vehicle holds {len(self.items)} items"))
         return [self.ends.ack(ACCEPTED)]
 
-    def _hear_ack(self, message: Message, now: float) -> list[Message]:
+    def _handle_ack(self, message: Message, now: float) -> list[Message]:
         if message.type in (ACCEPTED, INVALID_SEQUENCE):
             return []
         if message.type == UNSUPPORTED:

@@ -16,7 +16,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.outcome import CANCELLED, Outcome, Reason
 from gcs_windplan.link.peer import Contact, Ident, Peer, sender
-from gcs_windplan.link.wire import MISSION_TYPES, MissionType
+from gcs_windplan.link.wire import MISSION_TYPES
+from gcs_windplan.mission.firmware import MissionType
 
 FIRST_RETRY = 1.5  # [s] mavlink.io, Mission Protocol: timeout
 SENDS = 6  # mavlink.io, Mission Protocol: 5 retries
@@ -95,11 +96,11 @@ class Exchange(ABC):
         self._contact.restarted = False
         return self._begin(now)
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Take in a message, anybody's; gives what to send in answer."""
         if self.done:
             return []
-        self._contact.hear(message, now)
+        self._contact.handle(message, now)
         if self._contact.restarted:
             return self._fail("restarted", "the vehicle restarted during the transfer")
         if now >= self._started + self._limit:

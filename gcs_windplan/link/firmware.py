@@ -1,9 +1,8 @@
 """How each firmware wants a mission on the wire: home, the frame of items without a place, the aim of DO_JUMP.
 
-                      ArduPilot                 PX4, and kinds unknown here
-home                  item 0                    no item
-DO_JUMP aims at       items from 1, as files    items from 0
-items without place   any frame                 frame MISSION (PX4 only)
+Files and missions count items from 1 and have no home among them; a firmware's table (`mission.firmware`) says whether
+home is its item 0, from where its jumps count, and whether items without a place need frame MISSION. A firmware that
+nothing is known of counts from 0, has no home among its items, and gets them in the frames that they have.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from dataclasses import replace
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.link.wire import MissionType
 from gcs_windplan.mission import (
     Command,
     Frame,
@@ -27,10 +25,11 @@ from gcs_windplan.mission import (
     takes_place,
 )
 from gcs_windplan.mission.commands import command_name
-from gcs_windplan.vehicle import Autopilot, VehicleType
+from gcs_windplan.mission.firmware import Firmware, MissionType
+from gcs_windplan.vehicle import VehicleType
 
 
-def outgoing_items(mission: Mission, mission_type: MissionType, autopilot: Autopilot | None) -> tuple[MissionItem, ...]:
+def outgoing_items(mission: Mission, mission_type: MissionType, firmware: Firmware | None) -> tuple[MissionItem, ...]:
     """The items of one type as they are to be sent; none where the mission has none of the type."""
     if mission_type == "fence":
         return fence_items(mission.fence)
@@ -38,14 +37,13 @@ def outgoing_items(mission: Mission, mission_type: MissionType, autopilot: Autop
         return rally_items(mission.rally)
     if not mission.items:
         return ()
-    if autopilot == "ardupilot":
-        return (_home_item(mission.home), *mission.items)
-    return tuple(_for_px4(item, autopilot) for item in mission.items)
+    home = (_home_item(mission.home),) if has_home_item(firmware) else ()
+    return (*home, *(_outgoing(item, firmware) for item in mission.items))
 
 
 def incoming_mission(
     items: Sequence[MissionItem],
-    autopilot: Autopilot | None,
+    firmware: Firmware | None,
     vehicle_type: VehicleType | None = None,
     home: Home | None = None,
 ) -> Mission:
@@ -53,10 +51,19 @@ def incoming_mission(
 
     Raises InputError for a DO_JUMP that aims before the first item.
     """
-    if autopilot != "ardupilot":
-        return Mission(tuple(_jump_moved(item, 1) for item in items), home, autopilot, vehicle_type)
-    at_zero = _home_of(items[0]) if items else None
-    return Mission(tuple(items[1:]), at_zero or home, autopilot, vehicle_type)
+    at_zero = _home_of(items[0]) if items and has_home_item(firmware) else None
+    moved = tuple(_jump_moved(item, 1 - _first(firmware)) for item in items[has_home_item(firmware) :])
+    return Mission(moved, at_zero or home, None if firmware is None else firmware.autopilot, vehicle_type)
+
+
+def has_home_item(firmware: Firmware | None) -> bool:
+    """Whether item 0 of a mission on the wire is home."""
+    return firmware is not None and firmware.transfers.home_item
+
+
+def _first(firmware: Firmware | None) -> int:
+    """The number of the first item in jumps."""
+    return 0 if firmware is None else firmware.jumps.first
 
 
 def with_fence(mission: Mission, items: Sequence[MissionItem]) -> Mission:
@@ -84,9 +91,9 @@ def _home_of(item: MissionItem) -> Home | None:
     return Home(GeoPoint(item.latitude_deg, item.longitude_deg), item.altitude)
 
 
-def _for_px4(item: MissionItem, autopilot: Autopilot | None) -> MissionItem:
-    moved = _jump_moved(item, -1)
-    if autopilot != "px4" or takes_place(item.command) or not _is_known(item):
+def _outgoing(item: MissionItem, firmware: Firmware | None) -> MissionItem:
+    moved = _jump_moved(item, _first(firmware) - 1)
+    if firmware is None or firmware.placeless is None or takes_place(item.command) or not _is_known(item):
         return moved
     return replace(moved, frame=int(Frame.MISSION))
 
@@ -96,8 +103,8 @@ def _is_known(item: MissionItem) -> bool:
 
 
 def _jump_moved(item: MissionItem, step: int) -> MissionItem:
-    """The item with a DO_JUMP's aim counted from 0 in place of 1, or back."""
-    if item.command != Command.DO_JUMP:
+    """The item with a DO_JUMP's aim counted from elsewhere."""
+    if item.command != Command.DO_JUMP or step == 0:
         return item
     target, *rest = item.params
     if target + step < 0:

@@ -92,7 +92,7 @@ class AskHome:
         command = mavlink.MAV_CMD_REQUEST_MESSAGE
         return [mavlink.MAVLink_command_long_message(*self._peer.ident, command, 0, *wish)]
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Take in a message, anybody's."""
         if message.get_type() == "HOME_POSITION" and sender(message) == self._peer.ident:
             self.done = True

@@ -9,12 +9,9 @@ from typing import NamedTuple
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.codec import Message, Version
+from gcs_windplan.mission.firmware import Firmware, known_firmware
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
-AUTOPILOTS: dict[int, Autopilot] = {
-    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: "ardupilot",
-    mavlink.MAV_AUTOPILOT_PX4: "px4",
-}
 _ROTORS = "QUADROTOR COAXIAL HELICOPTER TRICOPTER HEXAROTOR OCTOROTOR DECAROTOR DODECAROTOR"
 _VTOL = range(19, 26)  # MAV_TYPE_VTOL_*, whose names change from version to version
 VEHICLE_TYPES: dict[int, VehicleType] = {
@@ -46,8 +43,13 @@ class Peer:
     version: Version = 2
 
     def __str__(self) -> str:
-        kind = {"ardupilot": "ArduPilot", "px4": "PX4", None: "autopilot of a kind unknown here"}[self.autopilot]
+        kind = "autopilot of a kind unknown here" if self.firmware is None else self.firmware.family
         return f"{kind} {self.ident}"
+
+    @property
+    def firmware(self) -> Firmware | None:
+        """What is known of its firmware, None for an autopilot unknown here."""
+        return known_firmware(self.autopilot, self.vehicle_type)
 
 
 def sender(message: Message) -> Ident:
@@ -65,7 +67,7 @@ class Contact:
     _boot_time: int = -1
     _ran: bool = False
 
-    def hear(self, message: Message, now: float) -> None:
+    def handle(self, message: Message, now: float) -> None:
         """Take note of a message, if it is the vehicle's."""
         if sender(message) != self.ident:
             return

@@ -14,9 +14,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import InputError, LinkError
 from gcs_windplan.link.codec import Codec, Message
+from gcs_windplan.link.discovery import Discovery
 from gcs_windplan.link.home import AskHome
 from gcs_windplan.link.key import read_key
-from gcs_windplan.link.meeting import Meeting
 from gcs_windplan.link.outcome import Reason
 from gcs_windplan.link.peer import Contact, Ident, Peer
 from gcs_windplan.link.transport import Clock, Transport, open_transport
@@ -27,7 +27,7 @@ OWN = Ident(255, mavlink.MAV_COMP_ID_PATHPLANNER)
 PATIENCE = 10.0  # [s] to find a vehicle
 _BEAT = 1.0  # [s] mavlink.io, Heartbeat Protocol
 
-Watch: TypeAlias = Callable[[int, int], None]
+ProgressCallback: TypeAlias = Callable[[int, int], None]
 """Told how many items of how many are through."""
 
 
@@ -47,7 +47,7 @@ class Machine(Protocol):
     def begin(self, now: float) -> list[Message]:
         """The first messages to send."""
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Take in a message; gives what to send."""
 
     def tick(self, now: float) -> list[Message]:
@@ -102,15 +102,15 @@ class Session:
 
         Raises LinkError where none is heard, InputError where several fit or where the keys do not.
         """
-        meeting = Meeting(PATIENCE if self._timeout is None else self._timeout, system, component)
-        self.run(meeting)
-        peer = meeting.peer()
-        if meeting.lost:
-            raise LinkError(meeting.lost)
+        discovery = Discovery(PATIENCE if self._timeout is None else self._timeout, system, component)
+        self.run(discovery)
+        peer = discovery.peer()
+        if discovery.lost:
+            raise LinkError(discovery.lost)
         if peer is None:
-            raise self._nobody(meeting)
+            raise self._nobody(discovery)
         self.codec.version = peer.version
-        self._contacts[peer.ident] = meeting.contact(peer)
+        self._contacts[peer.ident] = discovery.contact(peer)
         return peer
 
     def contact(self, peer: Peer) -> Contact:
@@ -129,7 +129,7 @@ class Session:
             return "its messages are signed, so it may want ours to be: give its key with --sign"
         return ""
 
-    def run(self, machine: Machine, watch: Watch | None = None) -> None:
+    def run(self, machine: Machine, watch: ProgressCallback | None = None) -> None:
         """Run a machine until it is done; Ctrl-C, a dead line and the session's end of time cancel it."""
         try:
             self._send(machine.begin(self._clock()))
@@ -150,11 +150,11 @@ class Session:
         data = self._transport.receive(max(0.0, min(machine.wake, self._next_beat, self._deadline) - now))
         now = self._clock()
         for message in self.codec.decode(data):
-            self._send(machine.hear(message, now))
+            self._send(machine.handle(message, now))
         if now >= machine.wake:
             self._send(machine.tick(now))
         if now >= self._deadline:
-            self._send(machine.cancel("time-out", f"the {self._timeout:g} s given for everything are over"))
+            self._send(machine.cancel("time-out", f"timed out after {self._timeout:g} s"))
 
     def _beat(self) -> None:
         now = self._clock()
@@ -167,13 +167,13 @@ class Session:
         for message in messages:
             self._transport.send(self.codec.encode(message))
 
-    def _nobody(self, meeting: Meeting) -> Exception:
+    def _nobody(self, discovery: Discovery) -> Exception:
         seen = self.codec.signatures
         if seen.wrong:
             return InputError("the vehicle signs with another key: give its own with --sign")
         if seen.missing:
             return InputError("the vehicle does not sign: leave --sign out, or set the key up in the vehicle")
-        if others := meeting.others():
+        if others := discovery.others():
             return LinkError(f"the vehicle wanted is not there, only {', '.join(others)}: check --sysid and --compid")
         return LinkError("no vehicle was heard: check the address, and that the vehicle is on")
 

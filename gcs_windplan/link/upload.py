@@ -56,9 +56,9 @@ class Upload(Exchange):
         self._last_progress = 0.0
         self._repeated = False
         self._handlers = {
-            "MISSION_REQUEST": self._hear_request,
-            "MISSION_REQUEST_INT": self._hear_request,
-            "MISSION_ACK": self._hear_ack,
+            "MISSION_REQUEST": self._handle_request,
+            "MISSION_REQUEST_INT": self._handle_request,
+            "MISSION_ACK": self._handle_ack,
         }
 
     @property
@@ -102,13 +102,20 @@ class Upload(Exchange):
         return self._unconfirmed(self._doubt or "the vehicle's last word was not heard")
 
     def _may_repeat(self) -> bool:
-        # after an error PX4 would accept the repeated item all the same
-        return self.ends.peer.autopilot == "px4" and not self._repeated and not self._doubt
+        # after an error the repeated item would be accepted all the same
+        firmware = self.ends.peer.firmware
+        accepts = firmware is not None and firmware.transfers.repeats_acceptance
+        return accepts and not self._repeated and not self._doubt
+
+    @property
+    def _minds_sequence(self) -> bool:
+        firmware = self.ends.peer.firmware
+        return firmware is not None and firmware.transfers.minds_sequence
 
     def _unconfirmed(self, message: str) -> list[Message]:
         return self._finish(Outcome("unknown", "unconfirmed", f"all items were sent, but {message}"))
 
-    def _hear_request(self, message: Message, now: float) -> list[Message]:
+    def _handle_request(self, message: Message, now: float) -> list[Message]:
         seq, count = message.seq, len(self._items)
         if self._phase == "resting":
             return []
@@ -136,13 +143,13 @@ class Upload(Exchange):
         first = int(seq == 0 and self.ends.mission_type == "mission")
         return item_to_message(item, seq, *self.ends.peer.ident, self.ends.number, first)
 
-    def _hear_ack(self, message: Message, now: float) -> list[Message]:
+    def _handle_ack(self, message: Message, now: float) -> list[Message]:
         code = message.type
         if self._phase == "resting":
             return []
         if code == ACCEPTED:
-            return self._hear_accepted()
-        if code == INVALID_SEQUENCE and self.ends.peer.autopilot == "ardupilot":
+            return self._handle_accepted()
+        if code == INVALID_SEQUENCE and self._minds_sequence:
             return []  # it says so to every duplicate, and goes on
         if code == ERROR and self._phase == "finishing":
             # a duplicate that came after the end gets this too, and then all is well
@@ -150,9 +157,9 @@ class Upload(Exchange):
             return []
         if code == ERROR and self._may_be_busy():
             return self._rest(now)
-        return self._hear_refusal(code)
+        return self._handle_refusal(code)
 
-    def _hear_accepted(self) -> list[Message]:
+    def _handle_accepted(self) -> list[Message]:
         asked, count = self.progress
         if asked < count:
             return self._fail("protocol", f"the vehicle accepted after asking for {asked} of {count} items")
@@ -160,7 +167,7 @@ class Upload(Exchange):
             return self._unconfirmed(f"{self._doubt} and then ACCEPTED")
         return self._finish(Outcome("accepted", "done", f"the vehicle accepted {count} items"))
 
-    def _hear_refusal(self, code: int) -> list[Message]:
+    def _handle_refusal(self, code: int) -> list[Message]:
         item = None if self._last_sent is None else self._items[self._last_sent]
         if code == ERROR and self._phase == "announcing":
             message = f"the vehicle refused with {code_name(code)}: it may be busy with another transfer"
@@ -173,7 +180,7 @@ class Upload(Exchange):
 
     def _may_be_busy(self) -> bool:
         """Whether ERROR may mean another transfer, a former one or a second announcement, and not an item."""
-        unasked = self._phase == "announcing" or self._counts > 1 or self.ends.peer.autopilot != "ardupilot"
+        unasked = self._phase == "announcing" or self._counts > 1 or not self._minds_sequence
         return unasked and self._restarts == 0
 
     def _rest(self, now: float) -> list[Message]:

@@ -9,13 +9,13 @@ from gcs_windplan.link.clear import Clear
 from gcs_windplan.link.comparison import Comparison, compare_items
 from gcs_windplan.link.download import Download
 from gcs_windplan.link.exchange import Ends
-from gcs_windplan.link.firmware import incoming_mission
+from gcs_windplan.link.firmware import has_home_item, incoming_mission
 from gcs_windplan.link.outcome import CANCELLED, Outcome
 from gcs_windplan.link.peer import Peer
-from gcs_windplan.link.session import Session, Watch
+from gcs_windplan.link.session import ProgressCallback, Session
 from gcs_windplan.link.upload import Upload
-from gcs_windplan.link.wire import MissionType
 from gcs_windplan.mission import Home, MissionItem
+from gcs_windplan.mission.firmware import MissionType
 
 _SHOWN = 3  # differences in a message
 _READINGS = 2  # while another ground station writes
@@ -28,7 +28,7 @@ _NOT_KNOWN: dict[MissionType, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TransferPart:
     """What became of the mission, the fence or the rally points.
 
     `items` are those that travelled, home among them on ArduPilot: sent, or read. `seconds` is how long it took
@@ -61,8 +61,8 @@ def push_items(
     items: Sequence[MissionItem],
     *,
     verify: bool = True,
-    watch: Watch | None = None,
-) -> Part:
+    watch: ProgressCallback | None = None,
+) -> TransferPart:
     """Upload items as they are to travel, read them back and compare; none at all deletes what is there.
 
     Raises InputError for items that MAVLink cannot carry.
@@ -70,7 +70,7 @@ def push_items(
     if not items:
         return clear_items(session, peer, mission_type, verify=verify)
     if (refused := _unable(peer, mission_type, "sent")) is not None:
-        return Part(mission_type, refused, tuple(items))
+        return TransferPart(mission_type, refused, tuple(items))
     start = session.clock()
     upload = Upload(Ends(session.own, peer, mission_type), items, session.contact(peer))
     most = _run(session, upload, watch)
@@ -80,13 +80,13 @@ def push_items(
         proof = _proved(session, upload.ends, tuple(items), proof.outcome, watch)
     outcome = _with_aftermath(proof.outcome, upload, most)
     seconds = session.clock() - start
-    return Part(mission_type, outcome, tuple(items), seconds, sending, proof.comparison, proof.home)
+    return TransferPart(mission_type, outcome, tuple(items), seconds, sending, proof.comparison, proof.home)
 
 
-def clear_items(session: Session, peer: Peer, mission_type: MissionType, *, verify: bool = True) -> Part:
+def clear_items(session: Session, peer: Peer, mission_type: MissionType, *, verify: bool = True) -> TransferPart:
     """Delete what the vehicle holds of one type, and look whether it is gone; ArduPilot keeps home."""
     if (refused := _unable(peer, mission_type, "deleted")) is not None:
-        return Part(mission_type, refused)
+        return TransferPart(mission_type, refused)
     start = session.clock()
     clear = Clear(Ends(session.own, peer, mission_type), session.contact(peer))
     session.run(clear)
@@ -97,17 +97,19 @@ def clear_items(session: Session, peer: Peer, mission_type: MissionType, *, veri
     outcome = proof.outcome
     if outcome.verdict == "unknown":
         outcome = outcome.noted(_NOT_KNOWN[mission_type])
-    return Part(mission_type, outcome, (), session.clock() - start, sending, proof.comparison, proof.home)
+    return TransferPart(mission_type, outcome, (), session.clock() - start, sending, proof.comparison, proof.home)
 
 
-def pull_items(session: Session, peer: Peer, mission_type: MissionType, *, watch: Watch | None = None) -> Part:
+def pull_items(
+    session: Session, peer: Peer, mission_type: MissionType, *, watch: ProgressCallback | None = None
+) -> TransferPart:
     """Read what the vehicle holds of one type, in its own form."""
     if (refused := _unable(peer, mission_type, "read")) is not None:
-        return Part(mission_type, refused)
+        return TransferPart(mission_type, refused)
     start = session.clock()
     download = _read(session, Ends(session.own, peer, mission_type), watch)
     seconds = session.clock() - start
-    return Part(mission_type, _hinted(download.outcome, session), download.items, seconds, seconds)
+    return TransferPart(mission_type, _hinted(download.outcome, session), download.items, seconds, seconds)
 
 
 def _unable(peer: Peer, mission_type: MissionType, deed: str) -> Outcome | None:
@@ -118,7 +120,7 @@ def _unable(peer: Peer, mission_type: MissionType, deed: str) -> Outcome | None:
     return Outcome("rejected", "mavlink1", message)
 
 
-def _run(session: Session, upload: Upload, watch: Watch | None) -> int:
+def _run(session: Session, upload: Upload, watch: ProgressCallback | None) -> int:
     """Run an upload; gives how many items the vehicle asked for at most, as an upload may begin again."""
     most = 0
 
@@ -132,13 +134,15 @@ def _run(session: Session, upload: Upload, watch: Watch | None) -> int:
     return max(most, upload.progress[0])
 
 
-def _read(session: Session, ends: Ends, watch: Watch | None) -> Download:
+def _read(session: Session, ends: Ends, watch: ProgressCallback | None) -> Download:
     download = Download(ends, session.contact(ends.peer))
     session.run(download, watch)
     return download
 
 
-def _proved(session: Session, ends: Ends, items: tuple[MissionItem, ...], sent: Outcome, watch: Watch | None) -> _Proof:
+def _proved(
+    session: Session, ends: Ends, items: tuple[MissionItem, ...], sent: Outcome, watch: ProgressCallback | None
+) -> _Proof:
     """The outcome after reading back; a reading during which somebody else wrote proves nothing."""
     for _ in range(_READINGS):
         download = _read(session, ends, watch)
@@ -159,22 +163,15 @@ def _proved(session: Session, ends: Ends, items: tuple[MissionItem, ...], sent: 
 
 def _home(ends: Ends, held: tuple[MissionItem, ...]) -> Home | None:
     """Home as ArduPilot gives it in item 0."""
-    if ends.peer.autopilot != "ardupilot" or ends.mission_type != "mission":
+    if not has_home_item(ends.peer.firmware) or ends.mission_type != "mission":
         return None
-    return incoming_mission(held[:1], "ardupilot").home
+    return incoming_mission(held[:1], ends.peer.firmware).home
 
 
 def _compared(ends: Ends, sent: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Comparison:
-    peer = ends.peer
-    home = 1 if peer.autopilot == "ardupilot" and ends.mission_type == "mission" else 0
-    return compare_items(
-        sent[home:],
-        held[home:],
-        mission_type=ends.mission_type,
-        autopilot=peer.autopilot,
-        vehicle_type=peer.vehicle_type,
-        first=home,
-    )
+    firmware = ends.peer.firmware
+    home = 1 if has_home_item(firmware) and ends.mission_type == "mission" else 0
+    return compare_items(sent[home:], held[home:], mission_type=ends.mission_type, firmware=firmware, first=home)
 
 
 def _differing(sent: Outcome, comparison: Comparison) -> Outcome:
@@ -195,11 +192,11 @@ def _with_aftermath(outcome: Outcome, upload: Upload, most: int) -> Outcome:
     if outcome.verdict == "accepted" or outcome.reason == "differs":
         return outcome
     ends = upload.ends
-    kind, firmware = ends.mission_type, ends.peer.autopilot
+    kind, firmware = ends.mission_type, ends.peer.firmware
     refused = outcome.verdict == "rejected" and not upload.overheard
     if refused and outcome.code != CANCELLED and most == 0:
         return outcome
-    put_together_first = firmware == "px4" or (firmware == "ardupilot" and kind == "fence")
+    put_together_first = firmware is not None and kind in firmware.transfers.whole
     if refused and put_together_first:
         return outcome.noted(f"the vehicle keeps its former {_NAMES[kind]}")
     notes = () if outcome.verdict == "rejected" and most else (_NOT_KNOWN[kind],)

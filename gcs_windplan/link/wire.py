@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, TypeAlias
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.link.codec import Message
 from gcs_windplan.mission import MissionItem, command_name, frame_name, plain_frame, scales_place, takes_place
-
-MissionType: TypeAlias = Literal["mission", "fence", "rally"]
+from gcs_windplan.mission.firmware import MissionType
 
 MISSION_TYPES: dict[MissionType, int] = {
     "mission": mavlink.MAV_MISSION_TYPE_MISSION,

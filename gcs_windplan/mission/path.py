@@ -17,8 +17,10 @@ import numpy as np
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission.commands import Command, Frame, command_name, plain_frame
-from gcs_windplan.mission.items import Home, Mission, MissionItem
-from gcs_windplan.mission.jumps import kept_items, unrolled
+from gcs_windplan.mission.firmware import Firmware, flying_firmware
+from gcs_windplan.mission.items import Home, MissionItem
+from gcs_windplan.mission.jumps import stored_items, unrolled
+from gcs_windplan.mission.mission import Mission
 from gcs_windplan.wind.field import Ground
 
 Place: TypeAlias = tuple[float, float, float]
@@ -26,8 +28,6 @@ MoveKind: TypeAlias = Literal["take-off", "leg", "landing", "return"]
 
 _APART = 0.01  # [m] places nearer than this are one
 _FULL_CIRCLE = 2 * math.pi
-_RADIUS = 60.0  # [m] of a fixed-wing's circles where the item names none: WP_LOITER_RAD, ArduPlane's default
-_COPTER_RADIUS = 10.0  # [m] of a multicopter's: CIRCLE_RADIUS, ArduCopter's default
 _LANDINGS = (Command.NAV_LAND, Command.NAV_VTOL_LAND)
 _TAKEOFFS = (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF)
 _PASSED = (Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT)
@@ -35,22 +35,15 @@ _PASSED = (Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT)
 _LEGS = (*_PASSED, Command.NAV_LOITER_TIME, Command.NAV_LOITER_UNLIM)
 _ONLY_REACHED = {
     Command.NAV_SPLINE_WAYPOINT: "is counted as a straight leg",
-    Command.NAV_LOITER_UNLIM: "holds for ever; the time counts up to it",
+    Command.NAV_LOITER_UNLIM: "loiters indefinitely; the time counts up to it",
     Command.NAV_LOITER_TURNS: "is flown to; its circles are not counted",
     Command.NAV_PAYLOAD_PLACE: "is flown to; its descent is not counted",
-}
-#: Items that a fixed-wing circles at, and which of their parameters is the radius; ArduCopter only turns.
-_CIRCLES: Final = {
-    Command.NAV_LOITER_TURNS: 2,
-    Command.NAV_LOITER_TIME: 2,
-    Command.NAV_LOITER_UNLIM: 2,
-    Command.NAV_LOITER_TO_ALT: 1,
 }
 _LABELS: Final = {Command.NAV_WAYPOINT: "waypoint", Command.NAV_SPLINE_WAYPOINT: "spline"}
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class CommandedSpeeds:
     """The speeds commanded so far [m/s]; None: the autopilot's own. `air` is a fixed-wing's."""
 
     ground: float | None = None
@@ -75,7 +68,7 @@ class Move:
     label: str
     start: Place
     end: Place
-    told: Told = Told()
+    told: CommandedSpeeds = CommandedSpeeds()
     hold: float = 0.0
     circling: float = 0.0
     radius: float = 0.0
@@ -88,7 +81,7 @@ class Course:
     """The moves of a mission in a local frame, in the order flown; `home` is where it takes off, east, north, AMSL [m].
 
     `landings` are the items that land and the places that they name; `remarks` say what is not modelled. `endless` is
-    the item that it never comes to the end of; `aloft` where the last item leaves it in the air.
+    the item that has no end; `aloft` where the last item leaves it in the air.
     """
 
     frame: LocalFrame
@@ -108,8 +101,9 @@ def course_of(mission: Mission, frame: LocalFrame | None = None, ground: Ground 
     """
     if mission.home is None:
         raise InputError("the mission names no home, from which its heights and its take-off count: give it one")
-    walk = _Walk(mission, mission.home, frame or LocalFrame(mission.home.point), ground)
-    for number, item in unrolled(kept_items(mission), walk.remark, walk.jump_for_ever):
+    firmware = flying_firmware(mission.autopilot, mission.vehicle_type)
+    walk = _Walk(mission, firmware, mission.home, frame or LocalFrame(mission.home.point), ground)
+    for number, item in unrolled(stored_items(mission), firmware.jumps, walk.remark, walk.jump_forever):
         walk.take(number, item)
         if walk.over:
             break
@@ -127,6 +121,7 @@ class _Walk:
     """
 
     mission: Mission
+    firmware: Firmware
     home: Home
     frame: LocalFrame
     ground: Ground | None
@@ -136,7 +131,7 @@ class _Walk:
     passing: bool = False
     endless: int | None = None
     landings: list[tuple[int, Place]] = field(default_factory=list)
-    told: Told = field(default_factory=Told)
+    told: CommandedSpeeds = field(default_factory=CommandedSpeeds)
     moves: list[Move] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     home_place: Place = (0.0, 0.0, 0.0)
@@ -145,10 +140,6 @@ class _Walk:
     def __post_init__(self) -> None:
         self.home_place = self.place = (*self._plan(self.home.point.latitude_deg, self.home.point.longitude_deg),
                                         self.home.altitude)  # fmt: skip
-
-    @property
-    def px4(self) -> bool:
-        return self.mission.autopilot == "px4"
 
     @property
     def winged(self) -> bool:
@@ -162,8 +153,8 @@ class _Walk:
     def take(self, number: int, item: MissionItem) -> None:
         """Do what an item means."""
         command = item.command
-        if self.down and _is_flown(item) and command not in (*_TAKEOFFS, Command.NAV_DELAY):
-            self.remark(f"item {number}, {command_name(command)}, stands behind a landing and is never come to")
+        if self.down and self._is_flown(item) and command not in (*_TAKEOFFS, Command.NAV_DELAY):
+            self.remark(f"item {number}, {command_name(command)}, stands behind a landing and is unreachable")
             self.over = True
         elif command in _TAKEOFFS:
             self._take_off(number, item)
@@ -178,12 +169,12 @@ class _Walk:
         elif command in _LEGS or command in _ONLY_REACHED or command == Command.NAV_LOITER_TO_ALT:
             self._go(number, item)
         elif command == Command.DO_SET_HOME or not command_name(command).startswith(("DO_", "JUMP_TAG")):
-            self.passing &= not _is_flown(item)
-            self.remark(f"item {number}, {command_name(command)}, is passed over")
+            self.passing &= not self._is_flown(item)
+            self.remark(f"item {number}, {command_name(command)}, is ignored")
 
-    def jump_for_ever(self, number: int, target: int) -> None:
+    def jump_forever(self, number: int, target: int) -> None:
         """A jump back that is always taken; from the ground it leads on to a take-off only."""
-        begun = next((item for item in self.mission.items[target - 1 :] if _is_flown(item)), None)
+        begun = next((item for item in self.mission.items[target - 1 :] if self._is_flown(item)), None)
         if not self.down or (begun is not None and begun.command in _TAKEOFFS):
             self.endless = number
 
@@ -225,16 +216,13 @@ class _Walk:
             self.over, self.endless = True, number
 
     def _circle(self, item: MissionItem) -> tuple[float, float]:
-        """How far it flies in circles at an item whose number it names [m], and their radius [m].
-
-        ArduCopter stays in place but for turns (mode_auto.cpp, do_circle); PX4's multicopters have no such item.
-        """
-        turning = item.command == Command.NAV_LOITER_TURNS
-        if item.command not in _CIRCLES or not (self.winged or (turning and not self.px4)):
+        """How far it flies in circles at an item whose number it names [m], and their radius [m]."""
+        index = self.firmware.circles.get(item.command)
+        if index is None:
             return 0.0, 0.0
-        named = abs(item.params[_CIRCLES[Command(item.command)]])
-        radius = named if named > 0 else _RADIUS if self.winged else _COPTER_RADIUS
-        turns = item.params[0] if turning else 0.0
+        named = abs(item.params[index])
+        radius = named if named > 0 else self.firmware.circle_radius
+        turns = item.params[0] if item.command == Command.NAV_LOITER_TURNS else 0.0
         return max(turns, 0.0) * _FULL_CIRCLE * radius, radius
 
     def _lift(self, number: int, altitude: float) -> None:
@@ -249,7 +237,7 @@ class _Walk:
             self._lift(number, max(end[2], self.place[2]))
         else:
             self._leg(number, "take-off", (*self.place[:2], end[2]))
-        if self.px4 and math.dist(end[:2], self.place[:2]) > _APART:
+        if self.firmware.takeoff_goes_to_place and math.dist(end[:2], self.place[:2]) > _APART:
             self._leg(number, "waypoint", end)
 
     def _land(self, number: int, item: MissionItem) -> None:
@@ -280,9 +268,9 @@ class _Walk:
         self._touch_down()
 
     def _touch_down(self) -> None:
-        """On the ground a mission ends; ArduCopter's goes on with a take-off, as `mission.lint` has it."""
+        """On the ground a mission ends, or goes on with a take-off."""
         self.landed = self.down = True
-        self.over = self.px4 or self.winged
+        self.over = not self.firmware.lands_and_goes_on
 
     def _delay(self, number: int, item: MissionItem) -> None:
         if item.params[0] > 0:
@@ -302,17 +290,18 @@ class _Walk:
             self.told = replace(self.told, **{names[int(kind)]: speed})
 
     def _end(self, number: int, item: MissionItem) -> Place:
-        """Where an item leads; here, where it names no place. Measured: ArduPilot's relative 0 keeps the height."""
+        """Where an item leads; here, where it names no place."""
         east, north, altitude = self.place
         if item.has_place:
             east, north = self._plan(item.latitude_deg, item.longitude_deg)
-        frame, is_landing = plain_frame(item.frame), item.command in _LANDINGS
+        if self.firmware.means_present_altitude(item.command, item.frame, item.altitude):
+            return east, north, altitude
+        frame = plain_frame(item.frame)
         if frame == Frame.GLOBAL:
             return east, north, item.altitude
         if frame == Frame.GLOBAL_TERRAIN_ALT:
             return east, north, item.altitude + self._datum(number, east, north)
-        keeps = frame == Frame.GLOBAL_RELATIVE_ALT and item.altitude == 0 and not self.px4 and not is_landing
-        if keeps or frame != Frame.GLOBAL_RELATIVE_ALT:
+        if frame != Frame.GLOBAL_RELATIVE_ALT:
             return east, north, altitude
         return east, north, self.home.altitude + item.altitude
 
@@ -328,11 +317,10 @@ class _Walk:
         """The ground's height under a place [m], NaN where it is not known."""
         return math.nan if self.ground is None else float(self.ground(np.array([place]))[0])
 
+    def _is_flown(self, item: MissionItem) -> bool:
+        """Whether the vehicle flies an item rather than doing something on its way."""
+        return item.command in self.firmware.navigation
+
     def _plan(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
         east, north = self.frame.to_local(latitude_deg, longitude_deg)[0]
         return float(east), float(north)
-
-
-def _is_flown(item: MissionItem) -> bool:
-    """Whether the vehicle flies an item rather than doing something on its way."""
-    return command_name(item.command).startswith("NAV_")

@@ -11,8 +11,14 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import BatteryError
 from gcs_windplan.flight import Flight
+from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.planning.request import Request
-from gcs_windplan.vehicle import ARDUCOPTER_PACE, PX4_PACE, air_density, as_flown, landing_seconds, takeoff_seconds
+from gcs_windplan.vehicle import (
+    air_density,
+    as_flown,
+    landing_seconds,
+    takeoff_seconds,
+)
 
 _FASTEST: Final = 1000.0  # [m/s] no limit: the planned ground speeds have the wind in them
 _SLOWEST: Final = 0.01  # [m/s] or [s]
@@ -117,7 +123,7 @@ def _longer(request: Request, flight: Flight) -> FloatArray:
     totals = flight.totals
     if not request.vehicle.hovers:
         return longer
-    pace = replace(PX4_PACE if request.vehicle.autopilot == "px4" else ARDUCOPTER_PACE, airspeed=_FASTEST)
+    pace = replace(firmware_of(request.vehicle.autopilot).motion, airspeed=_FASTEST)
     points = np.array([(waypoint.east, waypoint.north, waypoint.altitude) for waypoint in flight.waypoints])
     told = np.array([leg.ground_speed if leg.distance >= _LEVEL else pace.speed for leg in flight.legs])
     seconds = as_flown(points, np.maximum(told, _SLOWEST), pace=pace).seconds

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from gcs_windplan.flight.duration import MissionDuration, duration_of
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission.fence import Fence, FenceCircle, FencePolygon, RallyPoint, ReturnPoint
-from gcs_windplan.mission.items import Home, Mission
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.firmware.storage import FLOAT
+from gcs_windplan.mission.items import Home
+from gcs_windplan.mission.mission import Mission
 from gcs_windplan.planning.route_items import RoutePoint, route_mission
 from gcs_windplan.planning.sites import choose_layers, site_points
-from gcs_windplan.vehicle import ARDUCOPTER_PACE, PX4_PACE
 
 if TYPE_CHECKING:
     from gcs_windplan.arrays import FloatArray
@@ -34,8 +36,8 @@ def flown_duration(plan: Plan) -> MissionDuration | None:
     """
     if not plan.request.vehicle.hovers:
         return None
-    pace = PX4_PACE if plan.request.vehicle.autopilot == "px4" else ARDUCOPTER_PACE
-    return duration_of(mission_of(plan), pace=replace(pace, airspeed=_FASTEST))
+    pace = replace(firmware_of(plan.request.vehicle.autopilot).motion, airspeed=_FASTEST)
+    return duration_of(mission_of(plan), pace=pace)
 
 
 def mission_of(plan: Plan) -> Mission:
@@ -87,9 +89,10 @@ def _fence(request: Request, home: Home) -> Fence | None:
 
 def _rally(request: Request, home: Home) -> Iterator[RallyPoint]:
     for point, height in _above_home(request.rally, request, home):
-        # ArduPilot cuts to whole metres (RallyLocation's alt is an int16): never below what was planned
-        whole = math.ceil(height - _HAIR) if request.vehicle.autopilot == "ardupilot" else height
-        yield RallyPoint(point, whole)
+        # never below what was planned, where whole metres are stored
+        whole = math.ceil(height - _HAIR)
+        exact = firmware_of(request.vehicle.autopilot).rally == FLOAT
+        yield RallyPoint(point, height if exact else whole)
 
 
 def _above_home(sites: Iterable[Site], request: Request, home: Home) -> Iterator[tuple[GeoPoint, float]]:

@@ -16,7 +16,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Command, Frame
-from gcs_windplan.mission.items import Home, Mission, MissionItem
+from gcs_windplan.mission.firmware import Firmware, firmware_of
+from gcs_windplan.mission.firmware.storage import YAW
+from gcs_windplan.mission.items import Home, MissionItem
+from gcs_windplan.mission.mission import Mission
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 if TYPE_CHECKING:
@@ -81,7 +84,7 @@ def route_mission(
         )
     if altitude not in ("relative", "amsl"):
         raise InputError(f"altitude {altitude!r} is neither 'relative' nor 'amsl'")
-    writer = _ItemWriter(home, autopilot, altitude)
+    writer = _ItemWriter(home, firmware_of(autopilot, vehicle_type), altitude)
     items = (
         writer.take_off(route[0].altitude, vehicle_type),
         *_legs(writer, route, speed_changes),
@@ -92,10 +95,10 @@ def route_mission(
 
 @dataclass(frozen=True, slots=True)
 class _ItemWriter:
-    """Knows how an autopilot wants its items. ArduPilot: never NaN. PX4: NaN yaw, MISSION without a place."""
+    """Knows how a firmware wants its items: NaN for no yaw where it stores one, MISSION where that has no place."""
 
     home: Home
-    autopilot: Autopilot
+    firmware: Firmware
     reference: AltitudeReference
 
     def take_off(self, amsl: float, vehicle_type: VehicleType) -> MissionItem:
@@ -104,22 +107,27 @@ class _ItemWriter:
 
     def waypoint(self, target: RoutePoint) -> MissionItem:
         height = self._height(target.altitude)
-        if self.autopilot == "ardupilot" and self.reference == "relative" and abs(height) < _NEARLY_ZERO:
-            height = _NEARLY_ZERO  # ArduPilot takes a relative altitude of 0 for "stay as high as you are"
+        held = self.firmware.altitude.held(height)
+        if self.firmware.means_present_altitude(Command.NAV_WAYPOINT, self._frame, held):
+            height = _NEARLY_ZERO
         return self.at_place(Command.NAV_WAYPOINT, target.point, height)
 
     def land(self, point: GeoPoint, amsl: float) -> MissionItem:
         return self.at_place(Command.NAV_LAND, point, self._height(amsl))
 
     def at_place(self, command: Command, point: GeoPoint, height: float, param1: float = 0.0) -> MissionItem:
-        frame = Frame.GLOBAL_RELATIVE_ALT if self.reference == "relative" else Frame.GLOBAL
-        yaw = math.nan if self.autopilot == "px4" else 0.0
+        rule = self.firmware.rule(command)
+        yaw = math.nan if rule is not None and rule.params[3] == YAW else 0.0
         params = (param1, 0.0, 0.0, yaw)
-        return MissionItem(frame, command, params, point.latitude_deg, point.longitude_deg, height)
+        return MissionItem(self._frame, command, params, point.latitude_deg, point.longitude_deg, height)
 
     def without_place(self, command: Command, params: Params = (0.0, 0.0, 0.0, 0.0)) -> MissionItem:
-        # ArduPilot does not look at the frame of such items and gives them back in GLOBAL
-        return MissionItem(Frame.MISSION if self.autopilot == "px4" else Frame.GLOBAL, command, params)
+        # where no frame is looked at, such items come back in GLOBAL
+        return MissionItem(Frame.GLOBAL if self.firmware.placeless is None else Frame.MISSION, command, params)
+
+    @property
+    def _frame(self) -> Frame:
+        return Frame.GLOBAL_RELATIVE_ALT if self.reference == "relative" else Frame.GLOBAL
 
     def _height(self, amsl: float) -> float:
         return amsl - self.home.altitude if self.reference == "relative" else amsl

@@ -17,15 +17,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
 from gcs_windplan.link.peer import sender as sender_of
-from gcs_windplan.standin.ardupilot_store import CAPACITY, fence_fault, keep
+from gcs_windplan.link.wire import MISSION_TYPES
+from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.standin.items import FENCE, MISSION, RALLY, Refusal, StoredItem, item_message, read_item
 from gcs_windplan.standin.rules import Pilot, ServerOptions, acknowledge, result_name, text, type_name
+from gcs_windplan.standin.storage import fence_fault, store
 
-_BOOTING = 2.0  # [s] measured: for so long a COUNT is answered with NO_SPACE
-_ASK_AGAIN = 1.0  # [s] MissionItemProtocol.cpp, wp_recv_timeout_ms
-_GIVE_UP = 8.0  # [s] MissionItemProtocol.h, upload_timeout_ms
 _FLY_THERE, _CHANGE_ALTITUDE = 2, 3  # an item's `current`
-_DONE_TEXTS = {MISSION: "Flight plan received", RALLY: "Rally points received"}
+_DONE_TEXTS = {MISSION: "SimulatedFlight plan received", RALLY: "Rally points received"}
 _LATE_TEXTS = {MISSION: "Mission upload timeout", FENCE: "Fence upload timeout", RALLY: "Rally upload timeout"}
 
 
@@ -45,13 +44,14 @@ class _Upload:
 class ArduPilotMissions:
     """See `MissionServer`. Mission, fence and rally points are separate here: one can arrive while another does."""
 
-    def __init__(self, pilot: Pilot, options: ServerOptions, now: float) -> None:
+    def __init__(self, firmware: Firmware, pilot: Pilot, options: ServerOptions, now: float) -> None:
         self.arrived: set[int] = set()
         self.notes: list[str] = []
+        self._firmware = firmware
         self._pilot = pilot
         self._options = options
         self._booted = now
-        self._capacity = dict(CAPACITY)
+        self._capacity = {MISSION_TYPES[kind]: most for kind, most in firmware.capacity.items()}
         if options.capacity is not None:
             self._capacity[MISSION] = options.capacity
         self._held: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
@@ -76,7 +76,10 @@ class ArduPilotMissions:
     @property
     def wake(self) -> float:
         """When an item is to be asked for again, or an upload given up."""
-        times = (min(upload.asked + _ASK_AGAIN, upload.heard + _GIVE_UP) for upload in self._uploads.values())
+        times = (
+            min(upload.asked + self._firmware.transfers.ask_again, upload.heard + self._firmware.transfers.give_up)
+            for upload in self._uploads.values()
+        )
         return min(times, default=math.inf)
 
     @property
@@ -89,7 +92,7 @@ class ArduPilotMissions:
         self._booted = now
         self._uploads.clear()
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Answer a mission message."""
         kind = message.get_type()
         if not _is_for(self._options, message):
@@ -111,9 +114,9 @@ class ArduPilotMissions:
         """Ask again, or give up."""
         said: list[Message] = []
         for mission_type, upload in list(self._uploads.items()):
-            if now - upload.heard >= _GIVE_UP:
+            if now - upload.heard >= self._firmware.transfers.give_up:
                 said += self._give_up(mission_type, upload)
-            elif now - upload.asked >= _ASK_AGAIN:
+            elif now - upload.asked >= self._firmware.transfers.ask_again:
                 self.notes.append(f"asked {upload.sender} again for item {upload.seq} of its {type_name(mission_type)}")
                 said.append(self._ask(mission_type, upload, now))
         return said
@@ -124,7 +127,7 @@ class ArduPilotMissions:
         if running is not None and running.sender != sender:
             why = f"{running.sender} is uploading"
             return [self._no(sender, mavlink.MAV_MISSION_DENIED, mission_type, why)]
-        if now - self._booted < _BOOTING or count > self._capacity[mission_type]:
+        if now - self._booted < self._firmware.transfers.booting or count > self._capacity[mission_type]:
             return self._no_space(sender, mission_type, count, now)
         self._uploads.pop(mission_type, None)
         if mission_type != FENCE:
@@ -138,7 +141,7 @@ class ArduPilotMissions:
         return [self._ask(mission_type, upload, now)]
 
     def _no_space(self, sender: Ident, mission_type: int, count: int, now: float) -> list[Message]:
-        if now - self._booted < _BOOTING:
+        if now - self._booted < self._firmware.transfers.booting:
             return [self._no(sender, mavlink.MAV_MISSION_NO_SPACE, mission_type, "still booting")]
         most = self._capacity[mission_type]
         refusal = self._no(sender, mavlink.MAV_MISSION_NO_SPACE, mission_type, f"{count} items, room for {most}")
@@ -174,7 +177,7 @@ class ArduPilotMissions:
 
     def _store(self, mission_type: int, upload: _Upload, item: StoredItem) -> Refusal | None:
         """Write the item where it belongs, over the old one if there is one; a refusal leaves the old one."""
-        kept = keep(item, mission_type)
+        kept = store(item, mission_type, self._firmware)
         if isinstance(kept, Refusal):
             return kept
         held = upload.gathered if mission_type == FENCE else self._held[mission_type]
@@ -207,7 +210,7 @@ class ArduPilotMissions:
 
     def _give_up(self, mission_type: int, upload: _Upload) -> list[Message]:
         del self._uploads[mission_type]
-        why = f"item {upload.seq} did not come in {_GIVE_UP:.0f} s"
+        why = f"item {upload.seq} did not come in {self._firmware.transfers.give_up:.0f} s"
         return [
             text(mavlink.MAV_SEVERITY_WARNING, _LATE_TEXTS[mission_type]),
             self._no(upload.sender, mavlink.MAV_MISSION_OPERATION_CANCELLED, mission_type, why),

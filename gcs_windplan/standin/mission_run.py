@@ -13,12 +13,12 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from gcs_windplan.mission import Command, Frame, Home, command_name, plain_frame
-from gcs_windplan.standin.course import Course, Step, is_flown
-from gcs_windplan.standin.craft import REACH, Craft, Current, Reached
 from gcs_windplan.standin.items import StoredItem
-from gcs_windplan.standin.motion import Leg, Move, Wait
-from gcs_windplan.standin.pace import Pace, Vector, exit_speed
-from gcs_windplan.standin.px4_store import infeasible
+from gcs_windplan.standin.motion import Segment, StraightSegment, Wait
+from gcs_windplan.standin.pace import LegPace, Vector, exit_speed
+from gcs_windplan.standin.sequence import ItemSequence, Step
+from gcs_windplan.standin.storage import infeasible
+from gcs_windplan.standin.vehicle_state import REACH, Current, Reached, VehicleState
 
 _FORESIGHT = 6  # legs that are looked at for the speed at the end of one
 _APART = 0.01  # [m] places nearer than this are one
@@ -31,21 +31,23 @@ _LOOKED_AT = 16  # AP_Mission.cpp, starts_with_takeoff_cmd: items looked at for 
 
 
 class MissionRun:
-    """The course through the mission that the vehicle holds, and where on it the craft is.
+    """The course through the mission that the vehicle holds, and where on it the state is.
 
-    `items` gives that mission as it is right now; a new one may arrive in flight. `touched` is called when the craft
+    `items` gives that mission as it is right now; a new one may arrive in flight. `touched` is called when the state
     stands on the ground after a landing.
     """
 
-    def __init__(self, craft: Craft, items: Callable[[], Sequence[StoredItem]], touched: Callable[[], None]) -> None:
+    def __init__(
+        self, state: VehicleState, items: Callable[[], Sequence[StoredItem]], touched: Callable[[], None]
+    ) -> None:
         self.current = 0
         self.complete = False
-        self.ground_speed = craft.airframe.cruise
-        self._craft = craft
+        self.ground_speed = state.profile.speed
+        self._state = state
         self._items = items
         self._touched = touched
-        self._first = 1 if craft.autopilot == "ardupilot" else 0  # item 0 is home there
-        self._course = Course()
+        self._first = 1 if state.firmware.transfers.home_item else 0
+        self._sequence = ItemSequence(state.firmware)
         self._pending: deque[int] = deque()
         self._waited = 0.0
 
@@ -60,55 +62,60 @@ class MissionRun:
         if len(items) <= self._first:
             return "there is no mission"
         for seq, item in enumerate(items[self._first :], start=self._first):
-            if item.has_place and not self._craft.is_near(item):
+            if item.has_place and not self._state.is_near(item):
                 return f"item {seq} is more than {REACH / 1000:.0f} km away"
-        return infeasible(items) if self._craft.autopilot == "px4" else self._ardupilot_fault(items)
+        return infeasible(items, self._state.firmware) or self._refused(items)
 
-    def _ardupilot_fault(self, items: Sequence[StoredItem]) -> str | None:
-        flown = (item for item in items[1:_LOOKED_AT] if is_flown(item) and item.command != Command.NAV_DELAY)
+    def _refused(self, items: Sequence[StoredItem]) -> str | None:
+        """Why a firmware that looks for a take-off and for terrain does not begin, or None."""
+        firmware = self._state.firmware
+        if firmware.takeoff != "required":
+            return None
+        looked_at = items[self._first : _LOOKED_AT]
+        flown = (one for one in looked_at if one.command in firmware.navigation and one.command != Command.NAV_DELAY)
         first = next(flown, None)
-        if self._craft.landed and (first is None or first.command not in _TAKEOFFS):
+        if self._state.landed and (first is None or first.command not in _TAKEOFFS):
             return "Missing Takeoff Cmd"
         frames = {plain_frame(item.frame) for item in items if item.has_place}
-        if Frame.GLOBAL_TERRAIN_ALT in frames and self._craft.world.terrain is None:
+        if Frame.GLOBAL_TERRAIN_ALT in frames and self._state.world.terrain is None:
             return "Missing terrain data"
         return None
 
     def forget(self) -> None:
         """Be at the beginning again."""
         self.current, self.complete = 0, False
-        self._course, self._pending = Course(), deque()
+        self._sequence, self._pending = ItemSequence(self._state.firmware), deque()
 
-    def begin(self) -> list[Move]:
+    def begin(self) -> list[Segment]:
         """Begin, or go on where it was left; a speed commanded before is forgotten, as measured."""
         if self.complete:
             self.forget()
-        self.ground_speed = self._craft.airframe.cruise
-        return self._start(self._course.step(self._items(), max(self.current, self._first)))
+        self.ground_speed = self._state.profile.speed
+        return self._start(self._sequence.step(self._items(), max(self.current, self._first)))
 
-    def proceed(self) -> list[Move]:
+    def proceed(self) -> list[Segment]:
         """The present item is completed: go on with the next."""
-        step = self._course.step(self._items(), self.current + 1)
+        step = self._sequence.step(self._items(), self.current + 1)
         # measured: ArduPilot names the items that are done after a waypoint in the waypoint's place
-        named = step.before if self._craft.autopilot == "ardupilot" and step.before else (self.current,)
-        self._craft.events.extend(Reached(seq) for seq in named)
+        named = step.before if self._first and step.before else (self.current,)
+        self._state.events.extend(Reached(seq) for seq in named)
         return self._start(step)
 
-    def jump(self, seq: int) -> list[Move]:
+    def jump(self, seq: int) -> list[Segment]:
         """Go on with an item of the mission."""
         self.aim(seq)
-        return self._start(self._course.step(self._items(), self.current))
+        return self._start(self._sequence.step(self._items(), self.current))
 
     def aim(self, seq: int) -> None:
         """Take an item as the one to begin with; from the beginning all jumps count anew."""
         if seq < self._first:
-            seq, self._course = self._first, Course()
+            seq, self._sequence = self._first, ItemSequence(self._state.firmware)
         self.current, self.complete = seq, False
 
     def next_is_takeoff(self) -> bool:
         """Whether the item after the present one takes off again."""
         items = self._items()
-        step = next(self._course.ahead(items, self.current + 1), None)
+        step = next(self._sequence.ahead(items, self.current + 1), None)
         return step is not None and step.seq is not None and items[step.seq].command in _TAKEOFFS
 
     def wait(self, seconds: float) -> bool:
@@ -116,35 +123,35 @@ class MissionRun:
         self._waited += seconds
         return self._do_pending()
 
-    def repaced(self, leg: Leg) -> Leg:
+    def repaced(self, leg: StraightSegment) -> StraightSegment:
         """The rest of a leg at the commanded speed as it is now."""
         return self._leg(leg.end, passing=leg.exit_speed > 0)
 
-    def _start(self, step: Step) -> list[Move]:
+    def _start(self, step: Step) -> list[Segment]:
         self._pending, self._waited = deque(step.before), 0.0
         if step.seq is None:
             self._do_pending()
             self._pending.clear()
             self.complete = True
-            self._craft.say("Mission complete")
+            self._state.say("Mission complete")
             return []
         self.current = step.seq
-        self._craft.events.append(Current(step.seq))
+        self._state.events.append(Current(step.seq))
         self._do_pending()
         return self._moves(self._items()[step.seq])
 
-    def _moves(self, item: StoredItem) -> list[Move]:
-        """What an item means, from where the craft is."""
-        if item.has_place and not self._craft.is_near(item):
-            self._craft.say(f"Item {self.current} is too far away")
+    def _moves(self, item: StoredItem) -> list[Segment]:
+        """What an item means, from where the state is."""
+        if item.has_place and not self._state.is_near(item):
+            self._state.say(f"Item {self.current} is too far away")
             return []
-        craft, command, first = self._craft, item.command, item.params[0] if item.params[0] > 0 else 0.0
-        end = craft.target(item)
+        state, command, first = self._state, item.command, item.params[0] if item.params[0] > 0 else 0.0
+        end = state.target(item)
         if command in _TAKEOFFS:
             return self._taking_off(item, end)
-        if craft.landed and command not in _NO_LIFT_NEEDED:  # PX4; ArduPilot refused it before
-            lift = craft.manoeuvres.take_off(max(end[2], craft.body.altitude), craft.lift_off)
-            return [*lift, craft.manoeuvres.leg(end, self.ground_speed), Wait(first)]
+        if state.landed and command not in _NO_LIFT_NEEDED:  # PX4; ArduPilot refused it before
+            lift = state.manoeuvres.take_off(max(end[2], state.body.altitude), state.lift_off)
+            return [*lift, state.manoeuvres.leg(end, self.ground_speed), Wait(first)]
         if command in _PASSED:
             return [self._leg(end, passing=first == 0), *([Wait(first)] if first > 0 else [])]
         if command == Command.NAV_LOITER_UNLIM:
@@ -152,57 +159,57 @@ class MissionRun:
         if command == Command.NAV_LOITER_TIME:
             return [self._leg(end), Wait(first)]
         if command == Command.NAV_LOITER_TURNS:
-            return craft.manoeuvres.circle(end, first, item.params[2], self.ground_speed)
+            return state.manoeuvres.circle(end, first, item.params[2], self.ground_speed)
         if command == Command.NAV_DELAY:
             return [Wait(self._delay(item))]
         return self._ending(item, end)
 
-    def _ending(self, item: StoredItem, end: Vector) -> list[Move]:
+    def _ending(self, item: StoredItem, end: Vector) -> list[Segment]:
         """Landings, the way home, and what is not flown."""
-        craft, make = self._craft, self._craft.manoeuvres
-        level = (end[0], end[1], craft.body.altitude)
+        state, make = self._state, self._state.manoeuvres
+        level = (end[0], end[1], state.body.altitude)
         if item.command == Command.NAV_LOITER_TO_ALT:
             return [self._leg(level), *make.change_height(level, end[2])]
         if item.command in _LANDINGS:
-            return [] if craft.landed else [self._leg(level), *make.land(level, self._touched)]
+            return [] if state.landed else [self._leg(level), *make.land(level, self._touched)]
         if item.command == Command.NAV_RETURN_TO_LAUNCH:
-            return [] if craft.landed else make.return_to(craft.home_place, self._touched)
-        craft.say(f"{command_name(item.command)} is not flown")
+            return [] if state.landed else make.return_to(state.home_place, self._touched)
+        state.say(f"{command_name(item.command)} is not flown")
         return []
 
-    def _taking_off(self, item: StoredItem, end: Vector) -> list[Move]:
+    def _taking_off(self, item: StoredItem, end: Vector) -> list[Segment]:
         """Straight up; PX4 then flies to the place that the item names."""
-        craft = self._craft
-        if not craft.landed:
-            return craft.manoeuvres.change_height(craft.body.place, end[2])
-        moves = craft.manoeuvres.take_off(end[2], craft.lift_off)
-        if craft.autopilot == "px4" and math.dist(end[:2], craft.body.place[:2]) > _APART:
-            start = (craft.body.east, craft.body.north, end[2])
-            moves.append(craft.manoeuvres.leg(end, self.ground_speed, start=start))
+        state = self._state
+        if not state.landed:
+            return state.manoeuvres.change_height(state.body.place, end[2])
+        moves = state.manoeuvres.take_off(end[2], state.lift_off)
+        if state.firmware.takeoff_goes_to_place and math.dist(end[:2], state.body.place[:2]) > _APART:
+            start = (state.body.east, state.body.north, end[2])
+            moves.append(state.manoeuvres.leg(end, self.ground_speed, start=start))
         return moves
 
-    def _leg(self, end: Vector, *, passing: bool = False) -> Leg:
+    def _leg(self, end: Vector, *, passing: bool = False) -> StraightSegment:
         """A leg at the commanded speed that ends at rest, or passes its end as fast as what follows lets it."""
-        make = self._craft.manoeuvres
-        if not passing or self._craft.body.place == end:
+        make = self._state.manoeuvres
+        if not passing or self._state.body.place == end:
             return make.leg(end, self.ground_speed)
         vectors, paces = self._onward(end)
-        return make.leg(end, self.ground_speed, exit_speed(vectors, paces, make.airframe.radius))
+        return make.leg(end, self.ground_speed, exit_speed(vectors, paces, make.profile))
 
-    def _onward(self, end: Vector) -> tuple[list[Vector], list[Pace]]:
+    def _onward(self, end: Vector) -> tuple[list[Vector], list[LegPace]]:
         """The leg to `end` and those after it, until the first that ends at rest."""
-        place = self._craft.body.place
-        vectors, paces = [_difference(place, end)], [self._craft.manoeuvres.pace(place, end, self.ground_speed)]
+        place = self._state.body.place
+        vectors, paces = [_difference(place, end)], [self._state.manoeuvres.pace(place, end, self.ground_speed)]
         items = self._items()
-        for step in self._course.ahead(items, self.current + 1):
+        for step in self._sequence.ahead(items, self.current + 1):
             item = items[step.seq or 0]
             if item.command not in _LEGS or not item.has_place:
                 break
-            place, end = end, self._craft.target(item)
+            place, end = end, self._state.target(item)
             if math.dist(place, end) < _APART:
                 break
             vectors.append(_difference(place, end))
-            paces.append(self._craft.manoeuvres.pace(place, end, self.ground_speed))
+            paces.append(self._state.manoeuvres.pace(place, end, self.ground_speed))
             if item.command not in _PASSED or item.params[0] > 0 or len(vectors) == _FORESIGHT:
                 break
         return vectors, paces
@@ -226,18 +233,18 @@ class MissionRun:
             self._waited = 0.0
         if item.command == Command.CONDITION_DISTANCE:
             items = self._items()
-            end = self._craft.target(items[min(self.current, len(items) - 1)])
-            return math.dist(end[:2], self._craft.body.place[:2]) <= item.params[0]
+            end = self._state.target(items[min(self.current, len(items) - 1)])
+            return math.dist(end[:2], self._state.body.place[:2]) <= item.params[0]
         return True
 
     def _do(self, item: StoredItem) -> bool:
         """Do what takes no time; whether it changes the pace."""
-        craft = self._craft
+        state = self._state
         if item.command == Command.DO_CHANGE_SPEED:
             return self.change_speed(item.params[0], item.params[1])
-        if item.command == Command.DO_SET_HOME and craft.is_near(item):
-            east, north, altitude = craft.body.place if item.params[0] == 1 else craft.target(item)
-            craft.home = Home(craft.geographic(east, north), altitude)
+        if item.command == Command.DO_SET_HOME and state.is_near(item):
+            east, north, altitude = state.body.place if item.params[0] == 1 else state.target(item)
+            state.home = Home(state.geographic(east, north), altitude)
         return False
 
     def change_speed(self, kind: float, speed: float) -> bool:
@@ -248,14 +255,14 @@ class MissionRun:
             self.ground_speed = speed
         else:
             rate = "climb" if kind == 2 else "descent"
-            self._craft.airframe = replace(self._craft.airframe, **{rate: speed})
+            self._state.profile = replace(self._state.profile, **{rate: speed})
         return True
 
     def _delay(self, item: StoredItem) -> float:
         """NAV_DELAY's seconds, or those until the next time of day that it names."""
         if item.params[0] > 0:
             return item.params[0]
-        now = (self._craft.world.departure or datetime.now(UTC)) + timedelta(seconds=self._craft.body.clock)
+        now = (self._state.world.departure or datetime.now(UTC)) + timedelta(seconds=self._state.body.clock)
         since_midnight = (now.hour * 60 + now.minute) * 60 + now.second
         times = itertools.product(*map(_times, item.params[1:], (24, 60, 60)))
         waits = (((h * 60 + m) * 60 + s - since_midnight) % 86_400 for h, m, s in times)

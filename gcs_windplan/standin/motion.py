@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from gcs_windplan.standin.air import Air, speed_over_ground
-from gcs_windplan.standin.pace import Pace
+from gcs_windplan.standin.local_wind import LocalWind, speed_over_ground
+from gcs_windplan.standin.pace import LegPace
 
 _LOOK = 1.0  # [s] after so long the wind is looked at again
 _THERE = 1e-4  # [m]
@@ -30,7 +30,7 @@ class Body:
     east: float
     north: float
     altitude: float
-    air: Air
+    air: LocalWind
     airspeed: float
     speed: float = 0.0
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -51,7 +51,7 @@ class Body:
         self.speed, self.velocity = 0.0, (0.0, 0.0, 0.0)
 
 
-class Move(Protocol):
+class Segment(Protocol):
     """A part of a flight."""
 
     @property
@@ -59,24 +59,24 @@ class Move(Protocol):
         """Whether it has come to its end."""
 
     def advance(self, body: Body, seconds: float) -> float:
-        """Move the body on for at most `seconds`; what is left of them is returned, more than 0 only when done."""
+        """Segment the body on for at most `seconds`; what is left of them is returned, more than 0 only when done."""
 
 
 @dataclass(slots=True)
-class Leg:
+class StraightSegment:
     """A straight way to `end` (east, north, altitude) at a pace, ending at a speed.
 
     It begins where the body is, at the body's speed, and after `settling` seconds at rest.
     """
 
     end: tuple[float, float, float]
-    pace: Pace
+    pace: LegPace
     exit_speed: float = 0.0
     settling: float = 0.0
     done: bool = False
 
     def advance(self, body: Body, seconds: float) -> float:
-        """See `Move`."""
+        """See `Segment`."""
         if self.settling > 0 and body.speed == 0:
             rest = min(self.settling, seconds)
             self.settling -= rest
@@ -171,7 +171,7 @@ class Circle:
     _turned: float = 0.0
 
     def advance(self, body: Body, seconds: float) -> float:
-        """See `Move`."""
+        """See `Segment`."""
         east, north = body.east - self.centre[0], body.north - self.centre[1]
         radius = math.hypot(east, north)
         whole = abs(self.turns) * 2 * math.pi
@@ -199,13 +199,13 @@ class Circle:
 
 @dataclass(slots=True)
 class Wait:
-    """Stay for some seconds, or for ever."""
+    """Stay for some seconds, or indefinitely."""
 
     seconds: float = math.inf
     done: bool = False
 
     def advance(self, body: Body, seconds: float) -> float:
-        """See `Move`."""
+        """See `Segment`."""
         body.stand()
         time = min(seconds, self.seconds)
         self.seconds -= time
@@ -222,7 +222,7 @@ class Mark:
     done: bool = False
 
     def advance(self, body: Body, seconds: float) -> float:
-        """See `Move`."""
+        """See `Segment`."""
         self.done = True
         self.action()
         return seconds

@@ -15,12 +15,12 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
 from gcs_windplan.link.peer import sender as sender_of
+from gcs_windplan.link.wire import MISSION_TYPES
+from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.standin.items import FENCE, MISSION, RALLY, Refusal, StoredItem, item_message, plain, read_item
-from gcs_windplan.standin.px4_store import CAPACITY, infeasible, keep
 from gcs_windplan.standin.rules import Pilot, ServerOptions, acknowledge, result_name, text, type_name
+from gcs_windplan.standin.storage import infeasible, store
 
-_ASK_AGAIN = 0.25  # [s] mavlink_mission.h, MAVLINK_MISSION_RETRY_TIMEOUT_DEFAULT
-_GIVE_UP = 5.0  # [s] mavlink_mission.h, MAVLINK_MISSION_PROTOCOL_TIMEOUT_DEFAULT
 _ALL_TYPES = 255
 _COMPONENTS = (0, mavlink.MAV_COMP_ID_MISSIONPLANNER)  # answered besides its own
 
@@ -28,12 +28,13 @@ _COMPONENTS = (0, mavlink.MAV_COMP_ID_MISSIONPLANNER)  # answered besides its ow
 class Px4Missions:
     """See `MissionServer`."""
 
-    def __init__(self, pilot: Pilot, options: ServerOptions, now: float) -> None:
+    def __init__(self, firmware: Firmware, pilot: Pilot, options: ServerOptions, now: float) -> None:
         self.arrived: set[int] = set()
         self.notes: list[str] = []
+        self._firmware = firmware
         self._pilot = pilot
         self._options = options
-        self._capacity = dict(CAPACITY)
+        self._capacity = {MISSION_TYPES[kind]: most for kind, most in firmware.capacity.items()}
         if options.capacity is not None:
             self._capacity[MISSION] = options.capacity
         self._held: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
@@ -46,15 +47,15 @@ class Px4Missions:
         self._as_int = True
         self._began = self._heard = self._sent = now
         self._answers: dict[str, Callable[[Message, Ident, float], list[Message]]] = {
-            "MISSION_COUNT": self._hear_count,
-            "MISSION_ITEM": self._hear_item,
-            "MISSION_ITEM_INT": self._hear_item,
-            "MISSION_REQUEST_LIST": self._hear_list,
-            "MISSION_REQUEST": self._hear_request,
-            "MISSION_REQUEST_INT": self._hear_request,
-            "MISSION_CLEAR_ALL": self._hear_clear,
-            "MISSION_ACK": self._hear_ack,
-            "MISSION_SET_CURRENT": self._hear_current,
+            "MISSION_COUNT": self._handle_count,
+            "MISSION_ITEM": self._handle_item,
+            "MISSION_ITEM_INT": self._handle_item,
+            "MISSION_REQUEST_LIST": self._handle_list,
+            "MISSION_REQUEST": self._handle_request,
+            "MISSION_REQUEST_INT": self._handle_request,
+            "MISSION_CLEAR_ALL": self._handle_clear,
+            "MISSION_ACK": self._handle_ack,
+            "MISSION_SET_CURRENT": self._handle_current,
         }
 
     @property
@@ -66,8 +67,8 @@ class Px4Missions:
     def wake(self) -> float:
         """When an item is to be asked for again, or a transfer given up."""
         if self._state == "taking":
-            return min(self._sent + _ASK_AGAIN, self._heard + _GIVE_UP)
-        return self._heard + _GIVE_UP if self._state == "giving" else math.inf
+            return min(self._sent + self._firmware.transfers.ask_again, self._heard + self._firmware.transfers.give_up)
+        return self._heard + self._firmware.transfers.give_up if self._state == "giving" else math.inf
 
     @property
     def sent_home(self) -> StoredItem | None:
@@ -78,7 +79,7 @@ class Px4Missions:
         """Start again."""
         self._state, self._partner, self._seq, self._count = "idle", Ident(0, 0), 0, 0
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Answer a mission message."""
         answer = self._answers.get(message.get_type())
         own = (self._options.component, *_COMPONENTS)
@@ -88,18 +89,17 @@ class Px4Missions:
 
     def tick(self, now: float) -> list[Message]:
         """Ask again, or give up."""
-        if self._state != "idle" and now - self._heard >= _GIVE_UP:
-            self.notes.append(
-                f"transfer of {type_name(self._type)} with {self._partner} given up after {_GIVE_UP:.0f} s"
-            )
+        if self._state != "idle" and now - self._heard >= self._firmware.transfers.give_up:
+            what, patience = type_name(self._type), self._firmware.transfers.give_up
+            self.notes.append(f"transfer of {what} with {self._partner} given up after {patience:.0f} s")
             self._state = "idle"
             return [self._critical("Operation timeout")]
-        if self._state == "taking" and now - self._sent >= _ASK_AGAIN:
+        if self._state == "taking" and now - self._sent >= self._firmware.transfers.ask_again:
             self.notes.append(f"asked {self._partner} again for item {self._seq} of its {type_name(self._type)}")
             return [self._ask(now)]
         return []
 
-    def _hear_count(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_count(self, message: Message, sender: Ident, now: float) -> list[Message]:
         if self._state == "giving" or (self._state == "taking" and sender != self._partner):
             return [self._no(sender, mavlink.MAV_MISSION_ERROR, message.mission_type, f"busy with {self._partner}")]
         self._heard = now
@@ -127,7 +127,7 @@ class Px4Missions:
         self._state = "taking"
         return None
 
-    def _hear_item(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_item(self, message: Message, sender: Ident, now: float) -> list[Message]:
         self._as_int = message.get_type() == "MISSION_ITEM_INT"
         if sender != self._partner:
             self.notes.append(f"item {message.seq} by {sender} ignored: it began no upload")
@@ -141,7 +141,7 @@ class Px4Missions:
         if message.seq != self._seq:
             self.notes.append(f"item {message.seq} ignored: item {self._seq} is awaited")
             return []
-        kept = keep(read_item(message), self._type)
+        kept = store(read_item(message), self._type, self._firmware)
         if isinstance(kept, Refusal):
             self._state = "idle"
             refusal = self._no(sender, kept.code, self._type, f"item {message.seq}: {kept.reason}")
@@ -167,13 +167,13 @@ class Px4Missions:
         self.notes.append(f"upload of {name} by {self._partner} accepted: {count} items in {took:.2f} s")
         self.arrived.add(self._type)
         said = [acknowledge(self._partner, mavlink.MAV_MISSION_ACCEPTED, self._type)]
-        fault = infeasible(self._gathered) if self._type == MISSION else None
+        fault = infeasible(self._gathered, self._firmware) if self._type == MISSION else None
         if fault is not None:
             self.notes.append(f"the mission is held and will not be flown: {fault}")
             said.append(self._critical(f"Mission rejected: {fault}"))
         return said
 
-    def _hear_list(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_list(self, message: Message, sender: Ident, now: float) -> list[Message]:
         if self._seq == len(self._held.get(self._type, ())):
             self._state = "idle"  # everything was sent, and the ACK was lost
         same = self._state == "giving" and sender == self._partner and message.mission_type == self._type
@@ -188,7 +188,7 @@ class Px4Missions:
         self.notes.append(f"download of {type_name(self._type)} by {sender}: {self._count} items")
         return [mavlink.MAVLink_mission_count_message(sender.system, sender.component, self._count, self._type)]
 
-    def _hear_request(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_request(self, message: Message, sender: Ident, now: float) -> list[Message]:
         self._as_int = message.get_type() == "MISSION_REQUEST_INT"
         if sender != self._partner:
             return [self._critical("WPM: REJ. CMD: partner id mismatch")]
@@ -210,7 +210,7 @@ class Px4Missions:
         sent = item if self._as_int else plain(item)
         return [item_message(sent, message.seq, sender, self._type, current, self._as_int)]
 
-    def _hear_ack(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_ack(self, message: Message, sender: Ident, now: float) -> list[Message]:
         if sender != self._partner:
             return [self._critical("REJ. WP CMD: partner id mismatch")]
         if self._state == "giving" and message.mission_type == self._type:
@@ -223,7 +223,7 @@ class Px4Missions:
             self.notes.append(f"upload of {type_name(self._type)} cancelled by {sender} at item {self._seq}")
         return []
 
-    def _hear_clear(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_clear(self, message: Message, sender: Ident, now: float) -> list[Message]:
         if self._state != "idle":
             self.notes.append(f"clearing by {sender} ignored: busy with {self._partner}")
             return [self._critical("WPM: IGN CLEAR CMD: Busy")]
@@ -235,7 +235,7 @@ class Px4Missions:
         self.notes.append(f"{'everything' if wanted == _ALL_TYPES else type_name(wanted)} cleared by {sender}")
         return [acknowledge(sender, mavlink.MAV_MISSION_ACCEPTED, wanted)]
 
-    def _hear_current(self, message: Message, sender: Ident, now: float) -> list[Message]:
+    def _handle_current(self, message: Message, sender: Ident, now: float) -> list[Message]:
         if self._state != "idle":
             return [self._critical("WPM: IGN WP CURR CMD: Busy")]
         if message.seq >= len(self._held[MISSION]) or not self._pilot.jump(message.seq):

@@ -1,7 +1,4 @@
-"""The mission server of a stand-in vehicle: takes missions, fences and rally points, and gives them back.
-
-It owns no socket and no clock. What ArduPilot and PX4 do differently lies in `ardupilot_rules` and `px4_rules`.
-"""
+"""What every mission server of a stand-in vehicle is asked, and what it is made of; it owns no socket and no clock."""
 
 from __future__ import annotations
 
@@ -14,7 +11,6 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
 from gcs_windplan.standin.items import TYPE_NAMES, StoredItem
-from gcs_windplan.vehicle import Autopilot
 
 #: The messages that a mission server answers.
 MISSION_MESSAGES = frozenset(
@@ -95,7 +91,7 @@ class MissionServer(Protocol):
     def sent_home(self) -> StoredItem | None:
         """What was sent as ArduPilot's item 0, in whose place the vehicle gives its own home."""
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """The answers to a mission message meant for this vehicle."""
 
     def tick(self, now: float) -> list[Message]:
@@ -117,17 +113,6 @@ class ServerOptions:
     component: int = mavlink.MAV_COMP_ID_AUTOPILOT1
     capacity: int | None = None
     mavlink1: bool = False
-
-
-def mission_server(
-    autopilot: Autopilot, pilot: Pilot, options: ServerOptions | None = None, now: float = 0.0
-) -> MissionServer:
-    """A mission server with an autopilot's rules, booted at the time `now`."""
-    from gcs_windplan.standin.ardupilot_rules import ArduPilotMissions
-    from gcs_windplan.standin.px4_rules import Px4Missions
-
-    make = ArduPilotMissions if autopilot == "ardupilot" else Px4Missions
-    return make(pilot, options or ServerOptions(), now)
 
 
 def acknowledge(to: Ident, code: int, mission_type: int) -> Message:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.link.transport import Clock, Transport
-from gcs_windplan.standin.vehicle import StandIn
+from gcs_windplan.standin.standin import StandIn
 
 _LONGEST_WAIT = 0.1  # [s]
 
@@ -26,5 +26,5 @@ def serve(
                 transport.send(codec.encode(message))
         data = transport.receive(max(0.0, min(_LONGEST_WAIT, vehicle.wake - clock())))
         for message in codec.decode(data):
-            for answer in vehicle.hear(message, clock()):
+            for answer in vehicle.handle(message, clock()):
                 transport.send(codec.encode(answer))

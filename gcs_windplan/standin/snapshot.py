@@ -13,8 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint, rotate
 from gcs_windplan.mission import Home
-from gcs_windplan.standin.flight import Flight
-from gcs_windplan.standin.modes import Mode
+from gcs_windplan.mission.firmware import Mode
+from gcs_windplan.standin.flight import SimulatedFlight
 
 ENDURANCE = 1800.0  # [s]
 
@@ -72,7 +72,7 @@ class Snapshot:
 class Observer:
     """Takes snapshots of a flight; remembers the nose's direction and how long the battery was in use."""
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: SimulatedFlight) -> None:
         self._flight = flight
         self._heading = 0.0
         self._used = 0.0
@@ -83,36 +83,36 @@ class Observer:
 
     def advance(self, seconds: float) -> None:
         """Let the battery run for some seconds."""
-        if self._flight.craft.armed:
+        if self._flight.state.armed:
             self._used += seconds
 
     def look(self, boot: float, unix: float, mode: Mode, kind: int, booting: bool, items: int) -> Snapshot:
         """The vehicle as it is now."""
-        craft, run = self._flight.craft, self._flight.run
-        body = craft.body
-        turn = float(craft.world.frame.convergence(np.array([[body.east, body.north]]))[0])
+        state, run = self._flight.state, self._flight.run
+        body = state.body
+        turn = float(state.world.frame.convergence(np.array([[body.east, body.north]]))[0])
         velocity = (*_turned(body.velocity[:2], turn), body.velocity[2])
         wind = _turned(body.wind, turn)
-        air = (velocity[0] - wind[0], velocity[1] - wind[1]) if not craft.landed else (0.0, 0.0)
+        air = (velocity[0] - wind[0], velocity[1] - wind[1]) if not state.landed else (0.0, 0.0)
         airspeed = math.hypot(*air)
         if airspeed > _STILL:
             # the nose points into the air that it flies through: it crabs over ground, and hovers nose to the wind
             self._heading = math.atan2(air[0], air[1])
-        home = craft.home_place
+        home = state.home_place
         leg_end = self._flight.leg_end
         return Snapshot(
             boot=boot,
             unix=unix,
-            point=craft.point,
+            point=state.point,
             altitude=body.altitude,
-            home=craft.home,
+            home=state.home,
             local=(body.east - home[0], body.north - home[1], body.altitude - home[2]),
             velocity=velocity,
             wind=wind,
             heading=self._heading,
             pitch=-min(_LEAN * airspeed, _MOST_LEAN),
-            armed=craft.armed,
-            landed=craft.landed,
+            armed=state.armed,
+            landed=state.landed,
             booting=booting,
             charge=max(0.0, 1.0 - self._used / ENDURANCE),
             mode=mode,
@@ -130,7 +130,7 @@ class Observer:
             return int(mavlink.MISSION_STATE_COMPLETE)
         if self._flight.flies_mission:
             return int(mavlink.MISSION_STATE_ACTIVE)
-        begun = self._flight.craft.armed and self._flight.run.current > 0
+        begun = self._flight.state.armed and self._flight.run.current > 0
         return int(mavlink.MISSION_STATE_PAUSED if begun else mavlink.MISSION_STATE_NOT_STARTED)
 
 

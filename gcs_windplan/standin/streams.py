@@ -6,7 +6,7 @@ import math
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.vehicle import Autopilot
+from gcs_windplan.mission.firmware import Firmware
 
 _FASTEST = 0.05  # [s]
 
@@ -25,9 +25,9 @@ _RATES = {
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
     mavlink.MAVLINK_MSG_ID_HOME_POSITION: 0.5,
 }
-_OWN_RATES: dict[Autopilot, dict[int, float]] = {
-    "ardupilot": {mavlink.MAVLINK_MSG_ID_WIND: 1.0, mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: 1.0},
-    "px4": {mavlink.MAVLINK_MSG_ID_WIND_COV: 1.0},
+_WIND_RATES = {
+    True: {mavlink.MAVLINK_MSG_ID_WIND: 1.0, mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: 1.0},
+    False: {mavlink.MAVLINK_MSG_ID_WIND_COV: 1.0},
 }
 #: ArduPilot's groups for REQUEST_DATA_STREAM (MAV_DATA_STREAM), as far as the stand-in has their messages.
 _GROUPS = {
@@ -55,8 +55,8 @@ _GROUPS = {
 class Streams:
     """The intervals of messages, by their number, and when each is due [s]."""
 
-    def __init__(self, autopilot: Autopilot, now: float) -> None:
-        self._defaults = {kind: 1 / rate for kind, rate in {**_RATES, **_OWN_RATES[autopilot]}.items()}
+    def __init__(self, firmware: Firmware, now: float) -> None:
+        self._defaults = {kind: 1 / rate for kind, rate in {**_RATES, **_WIND_RATES[firmware.stream_groups]}.items()}
         self._intervals = dict(self._defaults)
         self._due = dict.fromkeys(self._defaults, now)
 

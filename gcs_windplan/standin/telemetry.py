@@ -172,10 +172,10 @@ def estimator(s: Snapshot) -> Message:
     return mavlink.MAVLink_ekf_status_report_message(_ESTIMATE_IS_GOOD, 0.01, 0.01, 0.01, 0.01, 0.0)
 
 
-Teller: TypeAlias = Callable[[Snapshot], Message]
+Encoder: TypeAlias = Callable[[Snapshot], Message]
 
 #: How each message is made, by its number.
-TELLERS: dict[int, Teller] = {
+ENCODERS: dict[int, Encoder] = {
     mavlink.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
     mavlink.MAVLINK_MSG_ID_ATTITUDE: attitude,
     mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: global_position,

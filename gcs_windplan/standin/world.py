@@ -11,19 +11,13 @@ import numpy as np
 from gcs_windplan.errors import InputError, TerrainError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Home
-from gcs_windplan.vehicle import Autopilot
+from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.wind.analytic import Calm
 from gcs_windplan.wind.field import WindField
 
 if TYPE_CHECKING:
     from gcs_windplan.planning.request import Request
     from gcs_windplan.terrain import Terrain
-
-#: Where the autopilots' own simulators stand: ArduPilot's CMAC (locations.txt), PX4's Zurich (px4_sitl).
-SIMULATOR_HOMES = {
-    "ardupilot": Home(GeoPoint(-35.363262, 149.165237), 584.0),
-    "px4": Home(GeoPoint(47.397742, 8.545594), 488.0),
-}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,9 +51,10 @@ def world_at(home: Home, wind: WindField | None = None) -> World:
     return World(home, LocalFrame(home.point), wind if wind is not None else Calm())
 
 
-def simulator_world(autopilot: Autopilot, wind: WindField | None = None) -> World:
+def simulator_world(firmware: Firmware, wind: WindField | None = None) -> World:
     """A level world that is left for the place of the first mission that comes."""
-    home = SIMULATOR_HOMES[autopilot]
+    latitude_deg, longitude_deg, altitude = firmware.simulator_home
+    home = Home(GeoPoint(latitude_deg, longitude_deg), altitude)
     return World(home, LocalFrame(home.point), wind if wind is not None else Calm(), settled=False)
 
 

@@ -3,10 +3,8 @@
 from gcs_windplan.vehicle.air import SEA_LEVEL_DENSITY, air_density
 from gcs_windplan.vehicle.airframe import Airframe, Battery
 from gcs_windplan.vehicle.pace import (
-    ARDUCOPTER_PACE,
-    PX4_PACE,
     LegTimes,
-    Pace,
+    MotionProfile,
     as_flown,
     landing_seconds,
     return_seconds,
@@ -19,16 +17,14 @@ from gcs_windplan.vehicle.power_wings import FixedWing
 from gcs_windplan.vehicle.vehicle import Autopilot, SpeedModel, Vehicle, VehicleType
 
 __all__ = [
-    "ARDUCOPTER_PACE",
-    "PX4_PACE",
     "SEA_LEVEL_DENSITY",
     "Airframe",
     "Autopilot",
     "Battery",
     "FixedWing",
     "LegTimes",
+    "MotionProfile",
     "Multirotor",
-    "Pace",
     "PowerModel",
     "PowerTable",
     "RotaryWing",

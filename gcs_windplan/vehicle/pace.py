@@ -22,7 +22,6 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import InputError, Problem
 
-_JERK, _RISE = 1.0, 0.3  # [m/s³] WPNAV_JERK, ArduCopter's default; [s] fitted: how long the jerk itself takes to rise
 _STUCK = 0.01  # [m/s] slower than this it stands against the wind
 _NO_SHARE = 1e-9  # a slope's part of its length that is rounding
 _NO_LEG = 0.01  # [m] places nearer than this are one
@@ -30,33 +29,40 @@ _SAME_SPEED = 1e-9  # [m/s]
 _HOP = 2.8  # [s] measured: the least that a return takes to come to rest above home
 
 
-@dataclass(frozen=True, slots=True)
-class Pace:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionProfile:
     """How an autopilot paces a multicopter: speeds [m/s], accelerations [m/s²], jerk [m/s³], lengths [m], times [s].
 
-    The defaults are ArduCopter 4.7's own parameters; what has no parameter was measured in its simulator. `airspeed` is
-    the most that the lean angle allows, here of the simulated airframe at the default ANGLE_MAX of 30° (15.0 at 45°).
+    Each firmware has its own (`mission.firmware`). `speed` is over ground, level; `airspeed` is the most that the lean
+    angle allows. The jerk takes `rise` to come and to go, and a start from rest takes `settle` more; a corner is cut
+    within `radius`. It lands with `landing` below the `landing_height` above ground, the changes of speed on the way
+    take `landing_ramp` more, and from touching the ground to disarmed it takes `touch_down`. It returns at
+    `return_height` above home at least, and hovers there for `return_hover`. From arming to lift-off it takes
+    `spool_up`, and a take-off takes `takeoff_ramp` more than height / climb. It circles at `circle_rate` [rad/s] at
+    most.
+
     Raises `InputError` for a value that is not above 0, or accelerations too small for the jerk.
     """
 
-    speed: float = 10.0  # WPNAV_SPEED: over ground, level
-    climb: float = 2.5  # WPNAV_SPEED_UP
-    descent: float = 1.5  # WPNAV_SPEED_DN
-    acceleration: float = 2.5  # WPNAV_ACCEL
-    vertical_acceleration: float = 1.0  # WPNAV_ACCEL_Z
-    jerk: float = _JERK  # WPNAV_JERK
-    rise: float = _RISE  # fitted
-    settle: float = 0.62  # fitted: what a start from rest takes more
-    radius: float = 2.0  # WPNAV_RADIUS
-    airspeed: float = 10.16  # measured at 30°
-    landing: float = 0.5  # LAND_SPEED, below the landing height
-    landing_height: float = 10.0  # LAND_ALT_LOW, above ground
-    landing_ramp: float = 1.3  # measured: what the changes of speed on the way down take more
-    touch_down: float = 1.95  # measured: from touching the ground to disarmed
-    return_height: float = 15.0  # RTL_ALT, above home
-    return_hover: float = 6.0  # measured: above home, RTL_LOIT_TIME of 5 s included
-    spool_up: float = 4.4  # measured: from arming to lift-off
-    takeoff_ramp: float = 2.2  # measured: what a take-off takes more than height / climb
+    speed: float
+    climb: float
+    descent: float
+    acceleration: float
+    vertical_acceleration: float
+    jerk: float
+    rise: float
+    settle: float
+    radius: float
+    airspeed: float
+    landing: float
+    landing_height: float
+    landing_ramp: float
+    touch_down: float
+    return_height: float
+    return_hover: float
+    spool_up: float
+    takeoff_ramp: float
+    circle_rate: float
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -70,34 +76,6 @@ class Pace:
 
 _MAY_BE_NONE: Final = frozenset(
     ("rise", "settle", "landing_ramp", "touch_down", "return_height", "return_hover", "spool_up", "takeoff_ramp")
-)
-
-ARDUCOPTER_PACE: Final = Pace()
-
-#: PX4 multicopters, NOT verified in flight. Documented (PX4 parameter reference): MPC_XY_CRUISE, MPC_Z_V_AUTO_UP and
-#: _DN, MPC_ACC_HOR, MPC_ACC_DOWN_MAX, MPC_JERK_AUTO, MPC_LAND_SPEED, MPC_LAND_ALT2, COM_DISARM_LAND, COM_SPOOLUP_TIME.
-#: NAV_ACC_RAD is 10 m and RTL_RETURN_ALT 60 m, but the multicopters' start script (rc.mc_defaults) sets 2 m and 30 m.
-#: Not documented, and only supposed here: that corners follow ArduCopter's law, that nothing is lost besides, and the
-#: airspeed.
-PX4_PACE: Final = Pace(
-    speed=5.0,
-    climb=3.0,
-    descent=1.5,
-    acceleration=3.0,
-    vertical_acceleration=3.0,
-    jerk=4.0,
-    rise=0.0,
-    settle=0.0,
-    radius=2.0,
-    airspeed=15.0,
-    landing=0.7,
-    landing_height=5.0,
-    landing_ramp=0.0,
-    touch_down=2.0,
-    return_height=30.0,
-    return_hover=0.0,
-    spool_up=1.0,
-    takeoff_ramp=0.0,
 )
 
 
@@ -126,8 +104,8 @@ def as_flown(
     speeds: FloatArray | float | None = None,
     holds: FloatArray | float = 0.0,
     winds: FloatArray | None = None,
-    pace: Pace = ARDUCOPTER_PACE,
     *,
+    pace: MotionProfile,
     climbs: FloatArray | float | None = None,
     descents: FloatArray | float | None = None,
     stops: Sequence[bool] | None = None,
@@ -157,7 +135,7 @@ def as_flown(
     return _in_sequence(legs, rests, halts, pace)
 
 
-def ramp_seconds(speed: float, acceleration: float, jerk: float = _JERK, rise: float = _RISE) -> float:
+def ramp_seconds(speed: float, acceleration: float, jerk: float, rise: float) -> float:
     """How long it takes from rest to a speed [m/s] with limits on acceleration [m/s²] and jerk [m/s³].
 
     The jerk takes `rise` [s] to come and to go; the way is half of speed · time.
@@ -171,7 +149,7 @@ def ramp_seconds(speed: float, acceleration: float, jerk: float = _JERK, rise: f
     return 2 * (reached / jerk + rise)
 
 
-def peak_speed(length: float, acceleration: float, jerk: float = _JERK, rise: float = _RISE) -> float:
+def peak_speed(length: float, acceleration: float, jerk: float, rise: float) -> float:
     """The highest speed [m/s] on a leg [m] from rest to rest: its two ramps fill the leg."""
     most = acceleration / jerk + rise
     if length >= 2 * acceleration * most**2:
@@ -188,7 +166,7 @@ def peak_speed(length: float, acceleration: float, jerk: float = _JERK, rise: fl
     return reached * (reached / jerk + rise)
 
 
-def overlap_seconds(distance: float, acceleration: float, jerk: float = _JERK, rise: float = _RISE) -> float:
+def overlap_seconds(distance: float, acceleration: float, jerk: float, rise: float) -> float:
     """For how long [s] a ramp may go on so that it ends, or begins, within a distance [m] of the waypoint.
 
     For a corner of turn θ the distance is radius / (2 sin(θ / 2)); its ramps overlap so long on either side.
@@ -201,12 +179,15 @@ def overlap_seconds(distance: float, acceleration: float, jerk: float = _JERK, r
     return most + (math.sqrt(speed**2 + 2 * acceleration * (distance - near)) - speed) / acceleration
 
 
-def takeoff_seconds(height: float, pace: Pace = ARDUCOPTER_PACE, climb: float | None = None) -> float:
-    """From arming to a height above ground [m]; measured 30.6 s to 60 m. `climb` is the commanded rate [m/s]."""
+def takeoff_seconds(height: float, pace: MotionProfile, climb: float | None = None) -> float:
+    """From arming to a height above ground [m]; `climb` is the commanded rate [m/s].
+
+    Measured on ArduCopter: 30.6 s to 60 m.
+    """
     return pace.spool_up + max(height, 0.0) / (pace.climb if climb is None else climb) + pace.takeoff_ramp
 
 
-def landing_seconds(height: float, pace: Pace = ARDUCOPTER_PACE, descent: float | None = None) -> float:
+def landing_seconds(height: float, pace: MotionProfile, descent: float | None = None) -> float:
     """From hovering at a height above ground [m] to disarmed. `descent` is the commanded rate [m/s]."""
     fast = max(height - pace.landing_height, 0.0) / (pace.descent if descent is None else descent)
     slow = min(max(height, 0.0), pace.landing_height) / pace.landing
@@ -214,12 +195,13 @@ def landing_seconds(height: float, pace: Pace = ARDUCOPTER_PACE, descent: float 
 
 
 def return_seconds(
-    vector: tuple[float, float], height: float, pace: Pace = ARDUCOPTER_PACE, wind: tuple[float, float] = (0.0, 0.0)
+    vector: tuple[float, float], height: float, pace: MotionProfile, wind: tuple[float, float] = (0.0, 0.0)
 ) -> float:
     """A return to launch from rest to disarmed [s]: up to the return height, home, down.
 
     `vector` [m] leads home, east and north; `height` [m] above it. Speeds commanded in the mission do not count.
-    Measured: d / 10 + (height - 10) / 1.5 + 36.7 s, 66 s from 60 m overhead. Infinite where the wind is too strong.
+    Measured on ArduCopter: d / 10 + (height - 10) / 1.5 + 36.7 s, 66 s from 60 m overhead. Infinite where the wind is
+    too strong.
     """
     up = max(pace.return_height - height, 0.0)
     points = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, up], [*vector, up]])
@@ -266,11 +248,13 @@ class _Leg:
     def flyable(self) -> bool:
         return min(self.entered, self.wanted) > _STUCK
 
-    def ramp(self, speed: float, pace: Pace) -> float:
+    def ramp(self, speed: float, pace: MotionProfile) -> float:
         return ramp_seconds(speed, self.acceleration, pace.jerk, pace.rise)
 
 
-def _legs(vectors: FloatArray, winds: FloatArray, told: FloatArray, halts: BoolArray, pace: Pace) -> list[_Leg | None]:
+def _legs(
+    vectors: FloatArray, winds: FloatArray, told: FloatArray, halts: BoolArray, pace: MotionProfile
+) -> list[_Leg | None]:
     """The legs; None where two points are one."""
     legs: list[_Leg | None] = []
     for i, vector in enumerate(vectors):
@@ -292,7 +276,7 @@ def _over(limit: float, share: float) -> float:
     return limit / share if share > _NO_SHARE else math.inf
 
 
-def _limit(direction: FloatArray, wind: FloatArray, told: FloatArray, pace: Pace) -> float:
+def _limit(direction: FloatArray, wind: FloatArray, told: FloatArray, pace: MotionProfile) -> float:
     """The highest speed along a slope [m/s] by what was commanded, and by what the lean angle leaves in the wind."""
     speed, climb, descent = told
     east, north, up = direction
@@ -306,7 +290,7 @@ def _limit(direction: FloatArray, wind: FloatArray, told: FloatArray, pace: Pace
     return float(min(min(speed, max(carried, 0.0)) / level, vertical))
 
 
-def _in_sequence(legs: Sequence[_Leg | None], rests: FloatArray, halts: BoolArray, pace: Pace) -> LegTimes:
+def _in_sequence(legs: Sequence[_Leg | None], rests: FloatArray, halts: BoolArray, pace: MotionProfile) -> LegTimes:
     seconds, peaks, losses = rests[1:].copy(), np.zeros(len(legs)), np.zeros(len(legs) + 1)
     overlap, settle = 0.0, pace.settle
     for i, leg in enumerate(legs):
@@ -327,7 +311,7 @@ def _in_sequence(legs: Sequence[_Leg | None], rests: FloatArray, halts: BoolArra
     return LegTimes(seconds, peaks, losses)
 
 
-def _corner(leg: _Leg, speed: float, following: _Leg | None, pace: Pace) -> tuple[float, float]:
+def _corner(leg: _Leg, speed: float, following: _Leg | None, pace: MotionProfile) -> tuple[float, float]:
     """For how long the ramps of a leg that ends with a speed and of the next overlap, and what settling takes [s]."""
     if following is None or not following.flyable:
         return 0.0, pace.settle
@@ -343,7 +327,7 @@ def _corner(leg: _Leg, speed: float, following: _Leg | None, pace: Pace) -> tupl
     return overlap, pace.settle * half_turn**2
 
 
-def _level_overlap(leg: _Leg, following: _Leg, pace: Pace) -> float:
+def _level_overlap(leg: _Leg, following: _Leg, pace: MotionProfile) -> float:
     """For how long two ramps may overlap before the slope's change takes more than the vertical acceleration [s].
 
     AP_Math's SCurve, advance_target_along_track, limits it so at the turn's middle.
@@ -354,7 +338,7 @@ def _level_overlap(leg: _Leg, following: _Leg, pace: Pace) -> float:
     return allowed / pace.jerk + pace.rise / 2
 
 
-def _speeds(leg: _Leg, elapsed: float, pace: Pace) -> tuple[float, float, float]:
+def _speeds(leg: _Leg, elapsed: float, pace: MotionProfile) -> tuple[float, float, float]:
     """The speeds [m/s] that a leg ramps up to and ramps down from, and how long the change between them takes [s].
 
     A slower command first cuts the ramp short, as far as that still has constant acceleration ahead of it. The rest is
@@ -372,13 +356,13 @@ def _speeds(leg: _Leg, elapsed: float, pace: Pace) -> tuple[float, float, float]
     return first, *_changed(leg, first, wanted, straight, pace)
 
 
-def _cut_short(leg: _Leg, entered: float, elapsed: float, pace: Pace) -> float:
+def _cut_short(leg: _Leg, entered: float, elapsed: float, pace: MotionProfile) -> float:
     """The lowest speed [m/s] that a ramp to `entered` can still end at."""
     begins, ends = leg.acceleration / pace.jerk + pace.rise, entered / leg.acceleration
     return entered - leg.acceleration * max(0.0, ends - max(elapsed, begins))
 
 
-def _changed(leg: _Leg, first: float, wanted: float, straight: float, pace: Pace) -> tuple[float, float]:
+def _changed(leg: _Leg, first: float, wanted: float, straight: float, pace: MotionProfile) -> tuple[float, float]:
     """The speed [m/s] that a change comes to on a straight part [m], and the time [s] that it takes."""
 
     def fits(speed: float) -> bool:

@@ -8,7 +8,9 @@ from typing import Literal, TypeAlias
 
 from gcs_windplan.errors import InputError, Problem
 
-Autopilot: TypeAlias = Literal["ardupilot", "px4"]
+Autopilot: TypeAlias = str
+"""The name of a firmware: `ardupilot`, `px4`, or another one of `mission.firmware`."""
+
 SpeedModel: TypeAlias = Literal["triangle", "paper"]
 VehicleType: TypeAlias = Literal["multicopter", "fixed-wing"]
 

@@ -11,14 +11,15 @@ import numpy as np
 from gcs_windplan.assessment import Assessment, Case, Finding, Limits, assess
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission.firmware.ardupilot import MOTION
 from gcs_windplan.terrain import Dem
-from gcs_windplan.vehicle import ARDUCOPTER_PACE, Airframe, Battery, PowerTable, Vehicle
+from gcs_windplan.vehicle import Airframe, Battery, PowerTable, Vehicle
 from gcs_windplan.wind import Calm
 
 FRAME = LocalFrame(GeoPoint(46.8, 9.8))
 GROUND = 500.0  # [m] the plain's height
 RELATIVE, AMSL, TERRAIN = Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL, Frame.GLOBAL_TERRAIN_ALT
-SWIFT = replace(ARDUCOPTER_PACE, airspeed=20.0)
+SWIFT = replace(MOTION, airspeed=20.0)
 
 PLAIN = Dem.local(np.full((81, 81), GROUND), -4000.0, 4000.0, 100.0)
 

@@ -15,8 +15,9 @@ from gcs_windplan.assessment import Assessment, Case, assess
 from gcs_windplan.flight.duration import duration_of
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Home, Mission, MissionItem
+from gcs_windplan.mission.firmware.px4 import MOTION as PX4
 from gcs_windplan.terrain import flat
-from gcs_windplan.vehicle import PX4_PACE, air_density, return_seconds
+from gcs_windplan.vehicle import air_density, return_seconds
 from gcs_windplan.wind import Calm, ConstantWind
 from gcs_windplan.wind.field import Steady
 from tests.assessment.cases import GROUND, HOME, RETURN, SWIFT, airframe, at, case, found, free, judged
@@ -38,7 +39,7 @@ ITEMS = (at(0, 500), at(400, 800, 120, 4.0), speed(7), at(400, 300, 60), at(-200
 
 @pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
 def test_times_are_those_of_the_duration(autopilot):
-    pace = replace(PX4_PACE if autopilot == "px4" else SWIFT, airspeed=20.0)
+    pace = replace(PX4 if autopilot == "px4" else SWIFT, airspeed=20.0)
     flown = case(*ITEMS, mission={"autopilot": autopilot}, pace=pace, wind=ConstantWind(3.0, -2.0))
     review = assess(flown)
     expected = duration_of(flown.mission, lambda starts, ends: np.tile([3.0, -2.0, 0.0], (len(starts), 1)), pace)

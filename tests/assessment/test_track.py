@@ -14,7 +14,7 @@ from gcs_windplan.assessment.track import track_of
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Home, MissionItem
-from gcs_windplan.vehicle import PX4_PACE
+from gcs_windplan.mission.firmware.px4 import MOTION as PX4
 from tests.assessment.cases import (
     AMSL,
     GROUND,
@@ -65,7 +65,7 @@ def test_a_jump_ahead_for_ever_leads_past_items():
     assert [leg.item for leg in review.legs] == [4]
     assert review.remarks == ()
     review = judged(at(0, 100), free(Command.DO_JUMP, 2, -1), at(0, 200))
-    assert "jumps for ever" in review.remarks[0]
+    assert "jumps back indefinitely" in review.remarks[0]
 
 
 def test_a_delay_is_a_hold_at_the_stop_before():
@@ -86,7 +86,7 @@ def test_a_return_goes_up_home_and_down(height, expected):
 
 
 def test_px4_returns_at_its_own_height():
-    review = judged(at(0, 300, 10), RETURN, mission={"autopilot": "px4"}, pace=PX4_PACE)
+    review = judged(at(0, 300, 10), RETURN, mission={"autopilot": "px4"}, pace=PX4)
     assert review.stops[-1].altitude == pytest.approx(GROUND + 30)
 
 
@@ -167,7 +167,7 @@ def test_a_fixed_wing_glides_to_its_landing_and_circles():
 
 def test_a_fixed_wings_speeds():
     items = (free(Command.DO_CHANGE_SPEED, 0, 20), at(0, 1000), free(Command.DO_CHANGE_SPEED, 1, 30), at(0, 3000))
-    review = judged(*items, mission={"vehicle_type": "fixed-wing"}, cruise=15.0, pace=replace(PX4_PACE, airspeed=25.0))
+    review = judged(*items, mission={"vehicle_type": "fixed-wing"}, cruise=15.0, pace=replace(PX4, airspeed=25.0))
     assert [leg.ground_speed for leg in review.legs] == pytest.approx([20, 25], abs=0.01)
 
 

@@ -16,11 +16,13 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.flight.duration import duration_of
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
-from gcs_windplan.vehicle import ARDUCOPTER_PACE, PX4_PACE, Pace, as_flown, landing_seconds, takeoff_seconds
+from gcs_windplan.mission.firmware.ardupilot import MOTION as ARDUCOPTER
+from gcs_windplan.mission.firmware.px4 import MOTION as PX4
+from gcs_windplan.vehicle import MotionProfile, as_flown, landing_seconds, takeoff_seconds
 
 HOME = Home(GeoPoint(36.5, -84.3), 300.0)
 FRAME = LocalFrame(HOME.point)
-SWIFT = replace(ARDUCOPTER_PACE, airspeed=15.0)  # leans to 45°
+SWIFT = replace(ARDUCOPTER, airspeed=15.0)  # leans to 45°
 RELATIVE, AMSL, TERRAIN = Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL, Frame.GLOBAL_TERRAIN_ALT
 a_hundredth = 0.01  # [s]
 one_centimetre = 0.01  # [m]
@@ -57,7 +59,7 @@ def mission(*items: MissionItem, **more: Any) -> Mission:
     return Mission((takeoff(), *items), HOME, **{"autopilot": "ardupilot", **more})
 
 
-def leg_seconds(*items: MissionItem, pace: Pace = SWIFT) -> list[float]:
+def leg_seconds(*items: MissionItem, pace: MotionProfile = SWIFT) -> list[float]:
     return [leg.seconds for leg in duration_of(mission(*items), pace=pace).legs]
 
 
@@ -141,20 +143,20 @@ def test_the_last_waypoint_is_a_stop(ending):
 def test_a_landing_flies_there_level_and_goes_down():
     flown = duration_of(mission(at(0, 500), at(0, 1000, 20, command=Command.NAV_LAND)))
     assert flown.legs[1].end == pytest.approx((0, 1000, 380), abs=one_centimetre)
-    assert flown.ending == pytest.approx(landing_seconds(60))
+    assert flown.ending == pytest.approx(landing_seconds(60, ARDUCOPTER))
 
 
 def test_a_landing_without_place_or_height_is_here_and_at_homes_height():
     flown = duration_of(mission(at(0, 500), MissionItem(RELATIVE, Command.NAV_LAND)))
     assert len(flown.legs) == 1
-    assert flown.ending == pytest.approx(landing_seconds(80))
+    assert flown.ending == pytest.approx(landing_seconds(80, ARDUCOPTER))
 
 
 def test_landing_and_taking_off_again():
     land = MissionItem(RELATIVE, Command.NAV_LAND)
     flown = duration_of(mission(at(0, 500), land, takeoff(50), at(0, 0, 50), HOME_AGAIN))
-    assert flown.takeoff == pytest.approx(takeoff_seconds(80) + takeoff_seconds(50))
-    assert flown.ending > landing_seconds(80) + landing_seconds(50)
+    assert flown.takeoff == pytest.approx(takeoff_seconds(80, ARDUCOPTER) + takeoff_seconds(50, ARDUCOPTER))
+    assert flown.ending > landing_seconds(80, ARDUCOPTER) + landing_seconds(50, ARDUCOPTER)
     assert [leg.end[2] for leg in flown.legs] == pytest.approx([380, 350])
 
 
@@ -172,10 +174,10 @@ def test_jumps_to_a_tag_forever_and_to_nowhere():
     tag = free(Command.JUMP_TAG, 42)
     flown = duration_of(mission(tag, at(0, 50), free(Command.DO_JUMP_TAG, 42, 1), free(Command.DO_JUMP, 99, 1)))
     assert [leg.item for leg in flown.legs] == [3, 3]
-    assert flown.remarks == ("item 5 jumps to nowhere and is passed over",)
+    assert flown.remarks == ("item 5 jumps to nowhere and is ignored",)
     flown = duration_of(mission(at(0, 50), free(Command.DO_JUMP, 2, -1), at(0, 99)))
     assert [leg.item for leg in flown.legs] == [2]
-    assert flown.remarks == ("item 3 jumps for ever; the time counts up to its first jump",)
+    assert flown.remarks == ("item 3 jumps back indefinitely; the time counts up to its first jump",)
 
 
 @pytest.mark.parametrize("jump", [free(Command.DO_JUMP, math.nan, 1), free(Command.DO_JUMP, 2, math.nan)])
@@ -202,18 +204,18 @@ def test_what_is_not_modelled_is_named():
     )
     flown = duration_of(mission(*items))
     assert flown.remarks == (
-        "item 3, CONDITION_DELAY, is passed over",
-        "item 6, command 31337, is passed over",
+        "item 3, CONDITION_DELAY, is ignored",
+        "item 6, command 31337, is ignored",
         "item 7, NAV_DELAY until a time of day, is counted as a stop",
         "item 8 counts from the terrain; its height is taken from home",
-        "item 9, NAV_LOITER_UNLIM, holds for ever; the time counts up to it",
+        "item 9, NAV_LOITER_UNLIM, loiters indefinitely; the time counts up to it",
     )
     assert [leg.item for leg in flown.legs] == [2, 4, 8, 9]
 
 
 def test_without_a_takeoff_one_is_counted():
     flown = duration_of(Mission((at(0, 500, 60), at(0, 900, 60)), HOME, "px4"))
-    assert flown.takeoff == pytest.approx(takeoff_seconds(60, PX4_PACE))
+    assert flown.takeoff == pytest.approx(takeoff_seconds(60, PX4))
     assert flown.remarks == ("there is no take-off before item 1; one straight up is counted",)
     assert len(flown.legs) == 2
 
@@ -351,10 +353,11 @@ def test_holds_count_as_the_firmware_keeps_them():
 # As measured
 
 
-def _read(flight: Any) -> tuple[Mission, Pace]:
+def _read(flight: Any) -> tuple[Mission, MotionProfile]:
     """A measured mission, and the pace by its parameters."""
     given = flight["params"]
-    pace = Pace(
+    pace = replace(
+        ARDUCOPTER,
         speed=given["WPNAV_SPEED"] / 100,
         climb=given["WPNAV_SPEED_UP"] / 100,
         descent=given["WPNAV_SPEED_DN"] / 100,

@@ -164,9 +164,9 @@ class Autopilot:
             for filtering in self.ears:
                 messages = [passed for each in messages for passed in filtering(each)]
             for each in messages:
-                self.hear(each)
+                self.handle(each)
 
-    def hear(self, message: Any) -> None:
+    def handle(self, message: Any) -> None:
         self.heard.append(message)
         answer = self.answers.get(message.get_type())
         target = (getattr(message, "target_system", 0), getattr(message, "target_component", 0))

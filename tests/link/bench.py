@@ -10,8 +10,8 @@ from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.firmware import outgoing_items
 from gcs_windplan.link.peer import Peer
 from gcs_windplan.link.session import Session
-from gcs_windplan.link.verified import Part, push_items
-from gcs_windplan.link.wire import MISSION_TYPES, MissionType
+from gcs_windplan.link.verified import TransferPart, push_items
+from gcs_windplan.link.wire import MISSION_TYPES
 from gcs_windplan.mission import (
     Command,
     Fence,
@@ -23,6 +23,7 @@ from gcs_windplan.mission import (
     MissionItem,
     RallyPoint,
 )
+from gcs_windplan.mission.firmware import MissionType
 
 from .autopilots import PX4, ArduPilot, Autopilot, Stored
 from .simulation import Faults, SimulatedTransport, World
@@ -57,11 +58,11 @@ class Bench:
     peer: Peer
     mission: Mission = field(default_factory=survey)
 
-    def push(self, kind: MissionType = "mission", **options: Any) -> Part:
+    def push(self, kind: MissionType = "mission", **options: Any) -> TransferPart:
         return push_items(self.session, self.peer, kind, self.items(kind), **options)
 
     def items(self, kind: MissionType = "mission") -> tuple[MissionItem, ...]:
-        return outgoing_items(self.mission, kind, self.peer.autopilot)
+        return outgoing_items(self.mission, kind, self.peer.firmware)
 
     def wanted(self, kind: MissionType = "mission") -> list[Stored]:
         """What the vehicle must hold in the end."""

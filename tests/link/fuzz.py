@@ -22,9 +22,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.peer import Ident, Peer
 from gcs_windplan.link.session import OWN, Session
-from gcs_windplan.link.verified import Part, push_items
-from gcs_windplan.link.wire import MISSION_TYPES, MissionType
+from gcs_windplan.link.verified import TransferPart, push_items
+from gcs_windplan.link.wire import MISSION_TYPES
 from gcs_windplan.mission import Command, Frame, MissionItem, takes_place
+from gcs_windplan.mission.firmware import MissionType
 
 from .autopilots import Autopilot, OtherStation, Refused, Stored
 from .bench import PROFILES, expected, same
@@ -42,7 +43,7 @@ class Run:
     profile: str
     kind: MissionType
     items: int
-    part: Part
+    part: TransferPart
     falsely: bool
     overwritten: bool
     bounded: bool

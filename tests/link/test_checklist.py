@@ -171,10 +171,10 @@ def test_row_04_accepted_after_an_error_is_not_believed():
     """PX4 accepts a repeated last item even when storing the mission failed."""
     upload = uploading(bench("px4"))
     for seq in range(6):
-        upload.hear(from_vehicle(request(seq)), 1.0)
-    assert upload.hear(from_vehicle(ack(ERROR)), 1.1) == []
+        upload.handle(from_vehicle(request(seq)), 1.0)
+    assert upload.handle(from_vehicle(ack(ERROR)), 1.1) == []
     assert not upload.done
-    upload.hear(from_vehicle(ack(0)), 1.2)
+    upload.handle(from_vehicle(ack(0)), 1.2)
     assert (upload.outcome.verdict, upload.outcome.reason) == ("unknown", "unconfirmed")
     assert "ERROR (1) and then ACCEPTED" in upload.outcome.message
 
@@ -183,7 +183,7 @@ def test_row_05_requests_are_answered_by_their_number():
     stand = bench("px4")
     upload = uploading(stand)
     for seq in (0, 0, 1, 2, 1, 3, 0, 3):
-        answer = upload.hear(from_vehicle(request(seq)), 1.0)
+        answer = upload.handle(from_vehicle(request(seq)), 1.0)
         assert [item.seq for item in answer] == [seq]
     assert upload.progress == (4, 6)
     assert upload.notes == []
@@ -200,8 +200,8 @@ def test_row_05_everything_twice_and_late(profile):
 def test_row_06_request_ahead_is_answered_and_noted():
     stand = bench("px4")
     upload = uploading(stand)
-    assert [item.seq for item in upload.hear(from_vehicle(request(0)), 1.0)] == [0]
-    assert [item.seq for item in upload.hear(from_vehicle(request(4)), 1.1)] == [4]
+    assert [item.seq for item in upload.handle(from_vehicle(request(0)), 1.0)] == [0]
+    assert [item.seq for item in upload.handle(from_vehicle(request(4)), 1.1)] == [4]
     assert upload.notes == ["item 4 was asked for before item 1"]
     assert not upload.done
 
@@ -210,8 +210,8 @@ def test_row_06_request_ahead_is_answered_and_noted():
 def test_row_07_request_past_the_end_cancels(seq):
     stand = bench("px4")
     upload = uploading(stand)
-    upload.hear(from_vehicle(request(0)), 1.0)
-    (answer,) = upload.hear(from_vehicle(request(seq)), 1.1)
+    upload.handle(from_vehicle(request(0)), 1.0)
+    (answer,) = upload.handle(from_vehicle(request(seq)), 1.1)
     assert (answer.get_type(), answer.type) == ("MISSION_ACK", CANCELLED)
     assert (upload.outcome.verdict, upload.outcome.reason) == ("unknown", "protocol")
     assert f"item {seq} of 6" in upload.outcome.message
@@ -221,7 +221,7 @@ def test_row_07_request_past_the_end_cancels(seq):
 def test_row_08_both_requests_get_mission_item_int(message):
     upload = uploading(bench("px4"))
     make = getattr(mavlink, f"MAVLink_{message}_message")
-    (answer,) = upload.hear(from_vehicle(make(*OWN, 0, 0)), 1.0)
+    (answer,) = upload.handle(from_vehicle(make(*OWN, 0, 0)), 1.0)
     assert answer.get_type() == "MISSION_ITEM_INT"
 
 
@@ -240,16 +240,16 @@ def test_row_08_both_requests_get_mission_item_int(message):
 )
 def test_row_09_messages_of_others_are_ignored(changes, source):
     upload = uploading(bench("px4"))
-    upload.hear(from_vehicle(request(0)), 1.0)
+    upload.handle(from_vehicle(request(0)), 1.0)
     for message in (request(1, **changes), request(99, **changes), ack(0, **changes), ack(4, **changes)):
-        assert upload.hear(from_vehicle(message, *source), 1.0) == []
+        assert upload.handle(from_vehicle(message, *source), 1.0) == []
     assert not upload.done
     assert upload.progress == (1, 6)
 
 
 def test_row_09_a_component_of_zero_means_all():
     upload = uploading(bench("px4"))
-    assert len(upload.hear(from_vehicle(request(0, target_component=0)), 1.0)) == 1
+    assert len(upload.handle(from_vehicle(request(0, target_component=0)), 1.0)) == 1
 
 
 def test_row_09_other_vehicles_do_not_end_a_download():
@@ -257,8 +257,8 @@ def test_row_09_other_vehicles_do_not_end_a_download():
     download = Download(Ends(OWN, stand.peer))
     download.begin(0.0)
     count = mavlink.MAVLink_mission_count_message
-    assert download.hear(from_vehicle(count(*OWN, 0, 1)), 0.1) == []
-    assert download.hear(from_vehicle(count(*OWN, 0, 0), 2), 0.1) == []
+    assert download.handle(from_vehicle(count(*OWN, 0, 1)), 0.1) == []
+    assert download.handle(from_vehicle(count(*OWN, 0, 0), 2), 0.1) == []
     assert not download.done
 
 
@@ -266,8 +266,8 @@ def test_row_09_other_vehicles_do_not_end_a_download():
 def test_row_10_accepted_too_early(profile):
     stand = bench(profile)
     upload = uploading(stand)
-    upload.hear(from_vehicle(request(0)), 1.0)
-    (answer,) = upload.hear(from_vehicle(ack(0)), 1.1)
+    upload.handle(from_vehicle(request(0)), 1.0)
+    (answer,) = upload.handle(from_vehicle(ack(0)), 1.1)
     assert (answer.get_type(), answer.type) == ("MISSION_ACK", CANCELLED)
     assert (upload.outcome.verdict, upload.outcome.reason) == ("unknown", "protocol")
     assert "1 of" in upload.outcome.message
@@ -275,7 +275,7 @@ def test_row_10_accepted_too_early(profile):
 
 def test_row_10_accepted_instead_of_the_first_request():
     upload = uploading(bench("px4"))
-    upload.hear(from_vehicle(ack(0)), 0.1)
+    upload.handle(from_vehicle(ack(0)), 0.1)
     assert (upload.outcome.verdict, upload.outcome.reason) == ("unknown", "protocol")
 
 
@@ -290,8 +290,8 @@ def test_row_11_wrong_sequence_is_no_end_on_ardupilot():
 
 def test_row_11_wrong_sequence_ends_it_on_others():
     upload = uploading(bench("px4"))
-    upload.hear(from_vehicle(request(0)), 1.0)
-    upload.hear(from_vehicle(ack(INVALID_SEQUENCE)), 1.1)
+    upload.handle(from_vehicle(request(0)), 1.0)
+    upload.handle(from_vehicle(ack(INVALID_SEQUENCE)), 1.1)
     assert (upload.outcome.verdict, upload.outcome.code) == ("rejected", INVALID_SEQUENCE)
 
 
@@ -343,8 +343,8 @@ def test_row_13_refusals_name_code_item_and_parameter(profile, code):
     stand = bench(profile)
     upload = uploading(stand)
     for seq in range(3):
-        upload.hear(from_vehicle(request(seq)), 1.0)
-    upload.hear(from_vehicle(ack(code)), 1.1)
+        upload.handle(from_vehicle(request(seq)), 1.0)
+    upload.handle(from_vehicle(ack(code)), 1.1)
     outcome = upload.outcome
     assert (outcome.verdict, outcome.reason, outcome.code, outcome.seq) == ("rejected", "refused", code, 2)
     entry = mavlink.enums["MAV_MISSION_RESULT"].get(code)
@@ -397,8 +397,8 @@ def test_row_13_nan_that_the_vehicle_refuses(profile):
 def test_row_14_the_vehicle_cancels(profile):
     stand = bench(profile)
     upload = uploading(stand)
-    upload.hear(from_vehicle(request(0)), 1.0)
-    upload.hear(from_vehicle(ack(CANCELLED)), 1.1)
+    upload.handle(from_vehicle(request(0)), 1.0)
+    upload.handle(from_vehicle(ack(CANCELLED)), 1.1)
     assert (upload.outcome.verdict, upload.outcome.code) == ("rejected", CANCELLED)
     assert "broke the transfer off" in upload.outcome.message
 
@@ -438,16 +438,16 @@ def test_row_15_reboot_while_sending(profile, seq, off):
 def test_row_15_an_older_message_is_no_reboot(profile):
     upload = uploading(bench(profile))
     for age in (50_000, 51_000, 49_500, 52_000):
-        upload.hear(from_vehicle(mavlink.MAVLink_system_time_message(0, age)), 1.0)
+        upload.handle(from_vehicle(mavlink.MAVLink_system_time_message(0, age)), 1.0)
     assert not upload.done
-    upload.hear(from_vehicle(mavlink.MAVLink_system_time_message(0, 2_000)), 1.0)
+    upload.handle(from_vehicle(mavlink.MAVLink_system_time_message(0, 2_000)), 1.0)
     assert upload.outcome.reason == "restarted"
 
 
 def test_row_15_reboot_shown_by_heartbeats_alone():
     upload = uploading(bench("px4"))
     for status in (mavlink.MAV_STATE_STANDBY, mavlink.MAV_STATE_ACTIVE, mavlink.MAV_STATE_BOOT):
-        upload.hear(from_vehicle(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, status, 3)), 1.0)
+        upload.handle(from_vehicle(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, status, 3)), 1.0)
     assert upload.outcome.reason == "restarted"
 
 
@@ -509,7 +509,7 @@ def test_row_16_a_vehicle_that_takes_its_time_for_each_item():
     now = 0.0
     while not upload.done:
         now += 9.0
-        upload.hear(from_vehicle(request(upload.progress[0])), now)
+        upload.handle(from_vehicle(request(upload.progress[0])), now)
     assert (upload.outcome.verdict, upload.outcome.reason) == ("unknown", "stalled")
     assert now < 300
     assert "did not end within 270 s" in upload.outcome.message
@@ -525,7 +525,7 @@ def test_row_16_count_of_zero(profile):
     assert stand.vehicle.held[0] == ([] if profile == "px4" else stand.vehicle.held[0][:1])
     upload = Upload(Ends(OWN, stand.peer), ())
     upload.begin(0.0)
-    upload.hear(from_vehicle(ack(0)), 0.1)
+    upload.handle(from_vehicle(ack(0)), 0.1)
     assert upload.outcome.verdict == "accepted"
 
 
@@ -604,7 +604,7 @@ def test_row_17_second_station_uploads_while_reading_back(profile):
 @both
 def test_row_17_overheard_uploads_of_others_are_noted(profile):
     upload = uploading(bench(profile))
-    upload.hear(from_vehicle(request(0, target_system=254, target_component=190)), 1.0)
+    upload.handle(from_vehicle(request(0, target_system=254, target_component=190)), 1.0)
     assert upload.overheard == {(254, 190)}
     assert "254/190" in upload.notes[0]
 

@@ -13,7 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.comparison import Difference, compare_either_way, compare_items, loss_lines
 from gcs_windplan.link.wire import item_to_message, message_to_item
 from gcs_windplan.mission import Command, Frame, MissionItem, command_name, takes_place
-from gcs_windplan.standin import ardupilot_store
+from gcs_windplan.mission.firmware import known_firmware
+from gcs_windplan.standin import storage
 from gcs_windplan.standin.items import MISSION, StoredItem, read_item
 
 from .autopilots import PX4, ArduPilot, Refused, Stored
@@ -51,7 +52,7 @@ def kept(item: MissionItem, profile) -> MissionItem:
 @given(item=items)
 def test_what_the_firmware_makes_of_an_item_is_no_difference(profile, item):
     autopilot = "px4" if profile is PX4 else "ardupilot"
-    found = compare_items([item], [kept(item, profile)], autopilot=autopilot, vehicle_type="multicopter")
+    found = compare_items([item], [kept(item, profile)], firmware=known_firmware(autopilot, "multicopter"))
     assert found.differences == ()
 
 
@@ -65,7 +66,7 @@ def test_any_other_place_is_a_difference(autopilot, item, change):
         "frame": 3 - item.frame,
         "command": int(Command.NAV_LOITER_UNLIM),
     }
-    found = compare_items([item], [replace(item, **{change: changed[change]})], autopilot=autopilot)
+    found = compare_items([item], [replace(item, **{change: changed[change]})], firmware=known_firmware(autopilot))
     assert len(found.differences) == 1
     assert found.differences[0].seq == 0
 
@@ -82,9 +83,13 @@ def test_any_other_place_is_a_difference(autopilot, item, change):
     ],
 )
 def test_centimetres_of_ardupilot(sent, held, fate):
-    found = compare_items([replace(WAYPOINT, altitude=sent)], [replace(WAYPOINT, altitude=held)], autopilot="ardupilot")
+    found = compare_items(
+        [replace(WAYPOINT, altitude=sent)], [replace(WAYPOINT, altitude=held)], firmware=known_firmware("ardupilot")
+    )
     assert ("differs" if found.differences else "lost" if found.losses else "same") == fate
-    exact = compare_items([replace(WAYPOINT, altitude=sent)], [replace(WAYPOINT, altitude=held)], autopilot="px4")
+    exact = compare_items(
+        [replace(WAYPOINT, altitude=sent)], [replace(WAYPOINT, altitude=held)], firmware=known_firmware("px4")
+    )
     assert exact.same == (fate == "same")
 
 
@@ -112,22 +117,22 @@ def test_centimetres_of_ardupilot(sent, held, fate):
 )
 def test_parameters(item, params, autopilot, vehicle_type, same):
     held = replace(item, params=params)
-    assert compare_items([item], [held], autopilot=autopilot, vehicle_type=vehicle_type).same == same
+    assert compare_items([item], [held], firmware=known_firmware(autopilot, vehicle_type)).same == same
 
 
 def test_frames_without_a_place_do_not_matter():
     for autopilot in ("ardupilot", "px4"):
-        assert compare_items([SPEED], [replace(SPEED, frame=Frame.MISSION)], autopilot=autopilot).same
+        assert compare_items([SPEED], [replace(SPEED, frame=Frame.MISSION)], firmware=known_firmware(autopilot)).same
 
 
 def test_a_place_in_frame_mission_is_not_the_place_that_ardupilot_makes_of_it():
     sent = replace(WAYPOINT, frame=Frame.MISSION)
     held = replace(WAYPOINT, frame=Frame.GLOBAL, latitude_deg=47e-7, longitude_deg=10e-7)  # x = 47, y = 10
-    assert not compare_items([sent], [held], autopilot="ardupilot").same
+    assert not compare_items([sent], [held], firmware=known_firmware("ardupilot")).same
 
 
 def test_numbers_of_items():
-    found = compare_items([WAYPOINT, SPEED], [WAYPOINT], autopilot="px4")
+    found = compare_items([WAYPOINT, SPEED], [WAYPOINT], firmware=known_firmware("px4"))
     assert [str(difference) for difference in found.differences] == ["the number of items 2 became 1"]
     assert not compare_items([], [WAYPOINT]).same
 
@@ -141,22 +146,22 @@ def test_fences_have_no_heights_and_no_frames():
     circle = MissionItem(3, Command.NAV_FENCE_CIRCLE_INCLUSION, (120.5, 0, 0, 0), 46.8, 9.8, 30.0)
     held = replace(circle, frame=0, altitude=0.0)
     for autopilot in ("ardupilot", "px4"):
-        assert compare_items([circle], [held], mission_type="fence", autopilot=autopilot).same
+        assert compare_items([circle], [held], mission_type="fence", firmware=known_firmware(autopilot)).same
         smaller = replace(held, params=(120.0, 0, 0, 0))
-        assert not compare_items([circle], [smaller], mission_type="fence", autopilot=autopilot).same
+        assert not compare_items([circle], [smaller], mission_type="fence", firmware=known_firmware(autopilot)).same
 
 
 def test_rally_points_of_ardupilot_are_whole_metres():
     rally = MissionItem(3, Command.NAV_RALLY_POINT, (0, 0, 0, 0), 46.8, 9.8, 60.75)
     for altitude, same in ((60.0, True), (60.75, True), (59.0, False)):
         held = replace(rally, altitude=altitude)
-        assert compare_items([rally], [held], mission_type="rally", autopilot="ardupilot").same == same
+        assert compare_items([rally], [held], mission_type="rally", firmware=known_firmware("ardupilot")).same == same
 
 
 def test_either_way():
     planned, onboard = [WAYPOINT], [replace(WAYPOINT, altitude=61.99, params=(2, 0, 0, 0))]
     for one, other in ((planned, onboard), (onboard, planned)):
-        found = compare_either_way(one, other, autopilot="ardupilot", vehicle_type="multicopter")
+        found = compare_either_way(one, other, firmware=known_firmware("ardupilot", "multicopter"))
         assert found.same
         assert len(found.losses) == 3
         (altitude,) = [loss for loss in found.losses if loss.field == "altitude"]
@@ -260,7 +265,7 @@ TAMPERED = [
 @pytest.mark.parametrize(("command", "number", "sent", "held"), TAMPERED)
 def test_ardupilot_holding_another_number_is_a_difference(command, number, sent, held, vehicle_type):
     ours, theirs = with_number(command, number, sent), with_number(command, number, held)
-    found = compare_items([ours], [theirs], autopilot="ardupilot", vehicle_type=vehicle_type)
+    found = compare_items([ours], [theirs], firmware=known_firmware("ardupilot", vehicle_type))
     assert len(found.differences) == 1
     name = {5: "latitude", 6: "longitude", 7: "altitude"}.get(number) if command == UNKNOWN else None
     assert found.differences[0].field == (name or f"parameter {number}")
@@ -290,7 +295,7 @@ def test_ardupilot_holding_another_number_is_a_difference(command, number, sent,
 )
 def test_what_ardupilot_does_not_keep_is_a_loss(command, number, sent, held):
     ours, theirs = with_number(command, number, sent), with_number(command, number, held)
-    found = compare_items([ours], [theirs], autopilot="ardupilot", vehicle_type="multicopter")
+    found = compare_items([ours], [theirs], firmware=known_firmware("ardupilot", "multicopter"))
     assert found.differences == ()
     assert [loss.field for loss in found.losses] == [f"parameter {number}"]
 
@@ -299,48 +304,41 @@ def as_kept(command: int, params: tuple[float, float, float, float]) -> tuple[Mi
     """An item, and what the stand-in's store gives back of it."""
     placed = (46.8, 9.8, 50.125) if takes_place(command) else (0.0, 0.0, 0.0)
     item = MissionItem(Frame.GLOBAL_RELATIVE_ALT, command, params, *placed)
-    held = ardupilot_store.keep(read_item(item_to_message(item, 1, 1, 1, MISSION)), MISSION)
+    held = storage.store(read_item(item_to_message(item, 1, 1, 1, MISSION)), MISSION, known_firmware("ardupilot"))
     if not isinstance(held, StoredItem):
         return item, None
     numbers = (held.command, 0, 1, *held.params, held.x, held.y, held.z)
     return item, message_to_item(mavlink.MAVLink_mission_item_int_message(1, 1, 1, held.frame, *numbers, MISSION))
 
 
-@pytest.mark.parametrize(
-    "command", sorted({*ardupilot_store._WITH_PLACE, *ardupilot_store._WITHOUT_PLACE}), ids=command_name
-)
+@pytest.mark.parametrize("command", sorted(known_firmware("ardupilot").commands), ids=command_name)
 def test_whole_numbers_that_the_stand_in_keeps_are_no_difference(command):
     for params in ((0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 1.0, 1.0), (2.5, 5.0, 1.0, 1.0)):
         item, held = as_kept(command, params)
         assert held is not None
-        found = compare_items([item], [held], autopilot="ardupilot", vehicle_type="multicopter")
-        known = {
-            mavlink.MAV_CMD_NAV_VTOL_LAND: {"parameter 1"},  # which the stand-in drops, as older ArduPilots do
-            mavlink.MAV_CMD_DO_ENGINE_CONTROL: {"parameter 4"},  # likewise
-        }.get(command, set())
-        assert {difference.field for difference in found.differences} <= known
+        assert compare_items([item], [held], firmware=known_firmware("ardupilot", "multicopter")).same
 
 
 def test_the_frame_of_a_command_that_nobody_knows_counts():
     sent = with_number(UNKNOWN, 1, 0)
-    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], autopilot="ardupilot")
+    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], firmware=known_firmware("ardupilot"))
     assert [difference.field for difference in found.differences] == ["frame"]
     nowhere = replace(sent, latitude_deg=0.0, longitude_deg=0.0, altitude=0.0)
-    assert compare_items([nowhere], [replace(nowhere, frame=Frame.GLOBAL)], autopilot="ardupilot").same
+    assert compare_items([nowhere], [replace(nowhere, frame=Frame.GLOBAL)], firmware=known_firmware("ardupilot")).same
 
 
 def test_the_frame_of_an_altitude_without_a_place_counts():
     sent = with_number(Command.NAV_CONTINUE_AND_CHANGE_ALT, 7, 80.0, Frame.GLOBAL_RELATIVE_ALT)
-    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], autopilot="ardupilot")
+    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], firmware=known_firmware("ardupilot"))
     assert [difference.field for difference in found.differences] == ["frame"]
 
 
 def test_frame_mission_becomes_one_above_the_sea_where_no_height_is():
     sent = MissionItem(Frame.MISSION, Command.DO_LAND_START)
-    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], autopilot="ardupilot")
-    assert (found.same, [loss.trifle for loss in found.losses]) == (True, [True])
+    found = compare_items([sent], [replace(sent, frame=Frame.GLOBAL)], firmware=known_firmware("ardupilot"))
+    assert (found.same, [loss.rounded for loss in found.losses]) == (True, [True])
     high = replace(sent, altitude=30.0)
-    assert not compare_items([high], [replace(high, frame=Frame.GLOBAL)], autopilot="ardupilot").same
+    assert not compare_items([high], [replace(high, frame=Frame.GLOBAL)], firmware=known_firmware("ardupilot")).same
 
 
 @pytest.mark.parametrize(
@@ -358,24 +356,24 @@ def test_frame_mission_becomes_one_above_the_sea_where_no_height_is():
 )
 def test_altitudes_of_ardupilot_are_cut_towards_zero_only(sent, held):
     ours, theirs = replace(WAYPOINT, altitude=sent), replace(WAYPOINT, altitude=held)
-    assert not compare_items([ours], [theirs], autopilot="ardupilot").same
+    assert not compare_items([ours], [theirs], firmware=known_firmware("ardupilot")).same
 
 
 @given(st.floats(-9000, 9000))
-def test_every_altitude_that_the_stand_in_keeps_is_a_trifle(altitude):
+def test_every_altitude_that_the_stand_in_stores_is_rounded(altitude):
     item = replace(WAYPOINT, altitude=altitude)
-    held = ardupilot_store.keep(read_item(item_to_message(item, 1, 1, 1, MISSION)), MISSION)
+    held = storage.store(read_item(item_to_message(item, 1, 1, 1, MISSION)), MISSION, known_firmware("ardupilot"))
     assert isinstance(held, StoredItem)
-    found = compare_items([item], [replace(item, altitude=held.z)], autopilot="ardupilot")
+    found = compare_items([item], [replace(item, altitude=held.z)], firmware=known_firmware("ardupilot"))
     assert found.same
-    assert all(loss.trifle for loss in found.losses)
+    assert all(loss.rounded for loss in found.losses)
 
 
 def test_rally_points_lose_metres_towards_zero_only():
     rally = MissionItem(3, Command.NAV_RALLY_POINT, (0, 0, 0, 0), 46.8, 9.8, 60.75)
     for altitude in (61.0, 60.5, 60.76):
         held = replace(rally, altitude=altitude)
-        assert not compare_items([rally], [held], mission_type="rally", autopilot="ardupilot").same
+        assert not compare_items([rally], [held], mission_type="rally", firmware=known_firmware("ardupilot")).same
 
 
 @pytest.mark.parametrize("autopilot", ["ardupilot", "px4", None])
@@ -383,29 +381,29 @@ def test_parts_of_parameters_5_and_6_count(autopilot):
     for number in (5, 6):
         ours = with_number(mavlink.MAV_CMD_DO_SET_ACTUATOR, number, 0.6)
         theirs = with_number(mavlink.MAV_CMD_DO_SET_ACTUATOR, number, 1.0)
-        (found,) = compare_items([ours], [theirs], autopilot=autopilot).differences
+        (found,) = compare_items([ours], [theirs], firmware=known_firmware(autopilot)).differences
         assert str(found) == f"item 0: parameter {number} 0.6 became 1"
 
 
 @pytest.mark.parametrize(("yaw", "same"), [(90, True), (1, True), (0, False), (45, False), (math.nan, False)])
 def test_loitering_on_px4_keeps_a_yaw_or_a_flag(yaw, same):
     ours = with_number(LOITER_TIME, 4, 90)
-    assert compare_items([ours], [with_number(LOITER_TIME, 4, yaw)], autopilot="px4").same == same
+    assert compare_items([ours], [with_number(LOITER_TIME, 4, yaw)], firmware=known_firmware("px4")).same == same
 
 
 def test_numbers_too_large_for_a_float_are_compared():
     huge = replace(WAYPOINT, altitude=1e39)
     for autopilot in ("ardupilot", "px4", None):
-        assert not compare_items([huge], [WAYPOINT], autopilot=autopilot).same
-        assert compare_items([huge], [huge], autopilot=autopilot).same
+        assert not compare_items([huge], [WAYPOINT], firmware=known_firmware(autopilot)).same
+        assert compare_items([huge], [huge], firmware=known_firmware(autopilot)).same
 
 
 def test_losses_in_words():
-    centimetre = [Difference(seq, "altitude", "61.999", "61.99", trifle=True) for seq in range(1, 32)]
-    frame = Difference(32, "frame", "MISSION", "GLOBAL", trifle=True)
+    centimetre = [Difference(seq, "altitude", "61.999", "61.99", rounded=True) for seq in range(1, 32)]
+    frame = Difference(32, "frame", "MISSION", "GLOBAL", rounded=True)
     others = [Difference(seq, "parameter 2", "5", "0") for seq in (2, 3, 4, 7)]
     alone = Difference(9, "parameter 4", "90", "0")
-    assert loss_lines([*centimetre, frame, *others, alone], "ardupilot") == (
+    assert loss_lines([*centimetre, frame, *others, alone], known_firmware("ardupilot")) == (
         "31 altitudes differ by less than ArduPilot's centimetre",
         "1 frame differs that no altitude refers to",
         "not kept by ArduPilot: parameter 2 5 became 0 (items 2 to 4, 7)",
@@ -416,8 +414,8 @@ def test_losses_in_words():
 
 @given(st.lists(items, max_size=4), st.lists(items, max_size=4), st.sampled_from(["ardupilot", "px4", None]))
 def test_either_way_is_the_same_both_ways(one, other, autopilot):
-    there = compare_either_way(one, other, autopilot=autopilot)
-    back = compare_either_way(other, one, autopilot=autopilot)
+    there = compare_either_way(one, other, firmware=known_firmware(autopilot))
+    back = compare_either_way(other, one, firmware=known_firmware(autopilot))
     assert there.same == back.same
     named = [{(found.seq, found.field) for found in comparison.differences} for comparison in (there, back)]
     assert named[0] == named[1]

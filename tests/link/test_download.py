@@ -129,11 +129,11 @@ def test_changed_while_it_is_read():
     download = Download(Ends(OWN, stand.peer))
     download.begin(0.0)
     count = mavlink.MAVLink_mission_count_message
-    (answer,) = download.hear(from_vehicle(count(*OWN, 3, 0)), 0.1)
+    (answer,) = download.handle(from_vehicle(count(*OWN, 3, 0)), 0.1)
     assert (answer.get_type(), answer.seq) == ("MISSION_REQUEST_INT", 0)
-    download.hear(from_vehicle(count(*OWN, 3, 0)), 0.2)
+    download.handle(from_vehicle(count(*OWN, 3, 0)), 0.2)
     assert not download.done
-    download.hear(from_vehicle(count(*OWN, 4, 0)), 0.3)
+    download.handle(from_vehicle(count(*OWN, 4, 0)), 0.3)
     assert (download.outcome.verdict, download.outcome.reason) == ("unknown", "changed")
 
 
@@ -141,9 +141,9 @@ def test_an_item_that_cannot_be():
     stand = bench("px4")
     download = Download(Ends(OWN, stand.peer))
     download.begin(0.0)
-    download.hear(from_vehicle(mavlink.MAVLink_mission_count_message(*OWN, 1, 0)), 0.1)
+    download.handle(from_vehicle(mavlink.MAVLink_mission_count_message(*OWN, 1, 0)), 0.1)
     item = mavlink.MAVLink_mission_item_int_message(*OWN, 0, 3, 16, 0, 1, 0, 0, 0, 0, 0, 0, math.inf, 0)
-    download.hear(from_vehicle(item), 0.2)
+    download.handle(from_vehicle(item), 0.2)
     assert (download.outcome.verdict, download.outcome.reason) == ("unknown", "unreadable")
     assert "item 0" in download.outcome.message
 
@@ -158,8 +158,8 @@ def test_it_ends_whatever_the_vehicle_says():
         if download.done:
             break
         now += 0.5
-        download.hear(from_vehicle(mavlink.MAVLink_mission_count_message(*OWN, 3, 0)), now)
-        download.hear(from_vehicle(ack(ERROR)), now)
+        download.handle(from_vehicle(mavlink.MAVLink_mission_count_message(*OWN, 3, 0)), now)
+        download.handle(from_vehicle(ack(ERROR)), now)
         download.tick(now)
     assert download.done
     assert now < 120

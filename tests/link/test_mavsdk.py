@@ -26,7 +26,7 @@ def test_push_and_pull(mavsdk_autopilot: SimpleNamespace, kind) -> None:
     with open_session(mavsdk_autopilot.address, timeout=20.0) as session:
         peer = session.meet()
         assert (peer.ident, peer.version) == ((1, 1), 2)
-        items = outgoing_items(survey(), kind, peer.autopilot)
+        items = outgoing_items(survey(), kind, peer.firmware)
         part = push_items(session, peer, kind, items)
         assert part.outcome.verdict == "accepted", part.outcome
         assert part.comparison is not None
@@ -44,9 +44,9 @@ def test_what_mavsdk_says_it_was_sent(mavsdk_autopilot: SimpleNamespace) -> None
     mission = Mission((*survey(3).items, odd, jump), HOME)
     with open_session(mavsdk_autopilot.address, timeout=20.0) as session:
         peer = session.meet()
-        part = push_items(session, peer, "mission", outgoing_items(mission, "mission", peer.autopilot))
+        part = push_items(session, peer, "mission", outgoing_items(mission, "mission", peer.firmware))
         assert part.outcome.verdict == "accepted", part.outcome
-        back = incoming_mission(pull_items(session, peer, "mission").items, peer.autopilot)
+        back = incoming_mission(pull_items(session, peer, "mission").items, peer.firmware)
     _, theirs = mavsdk_autopilot.arrived[-1]
     assert [item.seq for item in theirs] == list(range(5))
     assert [item.current for item in theirs] == [1, 0, 0, 0, 0]

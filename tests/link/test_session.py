@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.errors import InputError, LinkError
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.codec import Codec
+from gcs_windplan.link.discovery import LISTENING
 from gcs_windplan.link.home import Homes
-from gcs_windplan.link.meeting import LISTENING
 from gcs_windplan.link.session import OWN, Session
 from gcs_windplan.link.verified import clear_items, pull_items, push_items
 from gcs_windplan.mission import Home

@@ -10,7 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
-from gcs_windplan.mission.lint import Firmware, lint, told
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.lint import finding_lines, lint
 
 NAN = math.nan
 LATITUDE, LONGITUDE = 46.8, 9.8
@@ -39,12 +40,12 @@ SOUND = (TAKEOFF, WAYPOINT, FAR, LAND)
 
 def found(items, firmware, home=HOME):
     """The findings' rules with their items."""
-    return {(finding.rule, finding.item) for finding in lint(Mission(tuple(items), home), *firmware)}
+    return {(finding.rule, finding.item) for finding in lint(Mission(tuple(items), home), firmware_of(*firmware))}
 
 
 def one(items, firmware, rule, home=HOME):
     """The only finding of a rule."""
-    (finding,) = [found for found in lint(Mission(tuple(items), home), *firmware) if found.rule == rule]
+    (finding,) = [found for found in lint(Mission(tuple(items), home), firmware_of(*firmware)) if found.rule == rule]
     return finding
 
 
@@ -96,7 +97,7 @@ def test_nothing_is_found_in_a_sound_mission(firmware):
         (at(Command.NAV_VTOL_LAND), PX4, "vtol-only", "rejected"),
         (at(Command.NAV_VTOL_LAND), PLANE, "vtol-only", "ignored"),
         (free(Command.DO_VTOL_TRANSITION, 4), COPTER, "command-ignored", "ignored"),
-        (at(Command.NAV_SPLINE_WAYPOINT), PLANE, "command-ignored", "ignored"),
+        (at(Command.NAV_SPLINE_WAYPOINT), PLANE, "command-unsupported", "rejected"),
         (free(Command.CONDITION_YAW, 90), PLANE, "command-ignored", "ignored"),
         (at(Command.NAV_WAYPOINT, 100.0, -3.0), PX4, "below-home", "warned"),
     ],
@@ -104,7 +105,7 @@ def test_nothing_is_found_in_a_sound_mission(firmware):
 def test_an_item_that_breaks_a_rule(item, firmware, rule, effect):
     finding = one((TAKEOFF, WAYPOINT, item, FAR, LAND), firmware, rule)
     assert (finding.effect, finding.item) == (effect, 3)
-    assert Firmware(*firmware).name in finding.message or "MAVLink" in finding.message
+    assert firmware_of(*firmware).name in finding.message or "MAVLink" in finding.message
 
 
 @pytest.mark.parametrize(
@@ -186,7 +187,7 @@ def test_a_jump_without_a_count_is_passed_over(firmware):
     assert ("jump-never", 3) in found((TAKEOFF, WAYPOINT, jump(2.0, 0.0), FAR, LAND), firmware)
 
 
-def test_a_jump_for_ever_leaves_the_rest_out_on_ardupilot_and_has_no_such_count_on_px4():
+def test_an_endless_jump_leaves_the_rest_out_on_ardupilot_and_has_no_such_count_on_px4():
     items = (TAKEOFF, WAYPOINT, jump(2.0, -1.0), FAR, LAND)
     assert found(items, COPTER) == {("unreachable", 4), ("unreachable", 5)}
     assert found(items, PX4) == {("jump-shift", 3), ("jump-count", 3)}
@@ -327,7 +328,7 @@ def test_landings_that_planes_on_px4_fly():
 
 
 def test_without_a_vehicle_type_what_both_have_in_common():
-    items = (WAYPOINT, at(Command.NAV_SPLINE_WAYPOINT, params=(0, 0, 0, 90.0)), at(Command.NAV_VTOL_LAND, 300.0))
+    items = (WAYPOINT, at(Command.NAV_LOITER_TURNS, 200.0, params=(1, 5, 0, 0)), at(Command.NAV_VTOL_LAND, 300.0))
     assert found(items, ("ardupilot", None)) == {("parameter-dropped", 2)}
     assert "ArduPilot drops" in one(items, ("ardupilot", None), "parameter-dropped").message
     assert found(items, ("px4", None)) == {("command-unsupported", 2)}
@@ -335,7 +336,9 @@ def test_without_a_vehicle_type_what_both_have_in_common():
 
 def test_alike_findings_are_told_in_one_line():
     hold = [at(Command.NAV_WAYPOINT, 10.0 * step, params=(0, 0, 0, 10.0 * step)) for step in range(1, 6)]
-    lines = told(lint(Mission((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), *COPTER))
+    lines = finding_lines(
+        lint(Mission((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), firmware_of(*COPTER))
+    )
     assert [(line.effect, line.line) for line in lines] == [
         (
             "dropped",
@@ -347,13 +350,13 @@ def test_alike_findings_are_told_in_one_line():
 
 def test_worst_effects_come_first_and_the_whole_mission_before_its_items():
     items = (at(Command.NAV_WAYPOINT, up=61.999), at(Command.NAV_WAYPOINT, params=(0, NAN, 0, 0)))
-    findings = lint(Mission(items, HOME), *COPTER)
+    findings = lint(Mission(items, HOME), firmware_of(*COPTER))
     assert [(found.rule, found.item) for found in findings] == [
         ("takeoff-missing", None),
         ("altitude-rounded", 1),
         ("parameter-nan", 2),
     ]
-    assert [line.effect for line in told(findings)] == ["rejected", "rejected", "rounded"]
+    assert [line.effect for line in finding_lines(findings)] == ["rejected", "rejected", "rounded"]
 
 
 def test_frames_of_items_without_a_place_do_not_matter_to_ardupilot():

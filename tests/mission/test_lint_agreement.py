@@ -1,7 +1,4 @@
-"""What the lint says of a mission, and what the stand-in vehicle does with it: two accounts of the same rules.
-
-The lint works from the table of what is kept; the stand-in has code of its own for every command.
-"""
+"""What the lint says of a mission, and what the stand-in vehicle does with it, by one table of the firmware's facts."""
 
 from __future__ import annotations
 
@@ -20,12 +17,13 @@ from gcs_windplan.formats import read_mission
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.wire import item_to_message
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, takes_place
-from gcs_windplan.mission.kept import float_text, same_float
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.firmware.floats import float_text, same_float, single
 from gcs_windplan.mission.lint import lint
-from gcs_windplan.mission.supported import PX4_WITH_PLACE, PX4_WITHOUT_PLACE
-from gcs_windplan.standin.items import MISSION, StoredItem, single
-from gcs_windplan.standin.px4_store import infeasible
-from gcs_windplan.standin.rules import Parked, mission_server
+from gcs_windplan.standin.items import MISSION, StoredItem
+from gcs_windplan.standin.rules import Parked
+from gcs_windplan.standin.servers import mission_server
+from gcs_windplan.standin.storage import infeasible
 
 CORPUS = Path(__file__).parents[3] / "shared" / "data" / "missions"
 HOME = Home(GeoPoint(46.8, 9.8), 500.0)
@@ -119,11 +117,11 @@ def sendable(mission, autopilot):
 
 def uploaded(sent, autopilot):
     """What the stand-in holds of an upload, None where it refuses."""
-    server = mission_server(autopilot, Parked(), now=0.0)
+    server = mission_server(firmware_of(autopilot, "multicopter"), Parked(), now=0.0)
 
     def say(message):
         message._header.srcSystem, message._header.srcComponent = GROUND_STATION
-        return server.hear(message, 10.0)
+        return server.handle(message, 10.0)
 
     answers = say(mavlink.MAVLink_mission_count_message(1, 1, len(sent), MISSION))
     while True:
@@ -139,7 +137,9 @@ def uploaded(sent, autopilot):
 @given(mission=missions)
 def test_ardupilot_refuses_what_is_called_rejected_and_nothing_else(mission):
     held = uploaded(sendable(mission, "ardupilot"), "ardupilot")
-    rejected = {found.rule for found in lint(mission, "ardupilot", "multicopter") if found.effect == "rejected"}
+    rejected = {
+        found.rule for found in lint(mission, firmware_of("ardupilot", "multicopter")) if found.effect == "rejected"
+    }
     assert (held is None) == bool(rejected & UPLOAD)
     assert rejected <= UPLOAD | {"takeoff-missing"}
 
@@ -148,8 +148,8 @@ def test_ardupilot_refuses_what_is_called_rejected_and_nothing_else(mission):
 @given(mission=missions)
 def test_px4_refuses_what_is_called_rejected_and_nothing_else(mission):
     held = uploaded(sendable(mission, "px4"), "px4")
-    refused = held is None or infeasible(held) is not None
-    rejected = {found.rule for found in lint(mission, "px4", "multicopter") if found.effect == "rejected"}
+    refused = held is None or infeasible(held, firmware_of("px4")) is not None
+    rejected = {found.rule for found in lint(mission, firmware_of("px4", "multicopter")) if found.effect == "rejected"}
     assert refused == bool(rejected & (UPLOAD | {"takeoff-not-first"}))
 
 
@@ -160,7 +160,7 @@ def test_px4_refuses_what_is_called_rejected_and_nothing_else(mission):
 )
 def test_the_numbers_that_change_are_those_that_come_back_changed(item, autopilot):
     assume(autopilot == "ardupilot" or item.command not in (Command.NAV_LAND, Command.NAV_LOITER_TIME))
-    assume(autopilot == "ardupilot" or item.command != Command.DO_JUMP or not math.isnan(item.params[1]))
+    assume(autopilot == "ardupilot" or item.command != Command.DO_JUMP or item.params[1] >= 0)
     if item.command == Command.DO_JUMP:
         item = replace(item, params=(1.0, *item.params[1:]))
     if autopilot == "px4" and not takes_place(item.command):
@@ -170,7 +170,7 @@ def test_the_numbers_that_change_are_those_that_come_back_changed(item, autopilo
     assume(held is not None)
     if autopilot == "px4" and item.command == Command.DO_JUMP:
         held = [replace(held[0], params=(held[0].params[0] + 1, *held[0].params[1:]))]
-    found = lint(mission, autopilot, "multicopter")
+    found = lint(mission, firmware_of(autopilot, "multicopter"))
     assert told_changes(found) == changes(item, held[-1], autopilot)
     cut = [finding.number for finding in found if finding.rule == "altitude-rounded"]
     moved = takes_place(item.command) and not same_float(item.altitude, held[-1].z)
@@ -208,16 +208,18 @@ def changes(item: MissionItem, held: StoredItem, autopilot):
 @pytest.mark.parametrize("command", sorted({int(number) for number in mavlink.enums["MAV_CMD"]} - {0}))
 @pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
 def test_both_know_the_same_commands(command, autopilot):
-    placed = command in PX4_WITH_PLACE if autopilot == "px4" else takes_place(command)
+    placed = command in firmware_of("px4").commands if autopilot == "px4" else takes_place(command)
     frame = Frame.GLOBAL_RELATIVE_ALT if placed else Frame.MISSION
     item = MissionItem(frame, command, (0.0, 0.0, 0.0, 0.0), 46.8 if placed else 0.0, 9.8 if placed else 0.0, 50.0)
     if command == Command.DO_JUMP:
         item = replace(item, params=(1.0, 1.0, 0.0, 0.0))
     held = uploaded(messages(Mission((item,), HOME), autopilot), autopilot)
-    rejected = {found.rule for found in lint(Mission((item,), HOME), autopilot) if found.effect == "rejected"}
+    rejected = {
+        found.rule for found in lint(Mission((item,), HOME), firmware_of(autopilot)) if found.effect == "rejected"
+    }
     assert (held is None) == bool(rejected & UPLOAD)
     if autopilot == "px4":
-        assert (held is not None) == (command in PX4_WITH_PLACE | PX4_WITHOUT_PLACE)
+        assert (held is not None) == firmware_of("px4").takes(command)
 
 
 @pytest.mark.parametrize(("autopilot", "most"), [("ardupilot", 717), ("px4", 2000)])
@@ -225,7 +227,7 @@ def test_both_know_the_same_commands(command, autopilot):
 def test_both_have_the_same_room(autopilot, most, more):
     item = MissionItem(3, Command.NAV_WAYPOINT, (0.0, 0.0, 0.0, 0.0), 46.8, 9.8, single(50.0))
     mission = Mission((item,) * (most + more), HOME)
-    rules = {found.rule for found in lint(mission, autopilot, "multicopter")}
+    rules = {found.rule for found in lint(mission, firmware_of(autopilot, "multicopter"))}
     assert ("capacity" in rules) == (uploaded(messages(mission, autopilot), autopilot) is None) == bool(more)
 
 
@@ -241,12 +243,12 @@ def test_missions_of_the_wild_get_a_verdict_that_the_stand_in_shares(path, autop
     except FormatError:
         pytest.skip("no mission that can be read")
     for kind in ("fixed-wing", None, "multicopter"):
-        found = lint(mission, autopilot, kind)
+        found = lint(mission, firmware_of(autopilot, kind))
         assert all(finding.item is None or 1 <= finding.item <= len(mission.items) for finding in found)
     try:
         held = uploaded(messages(mission, autopilot), autopilot)
     except InputError as error:
         pytest.skip(f"cannot be sent: {error}")
-    refused = held is None or (autopilot == "px4" and infeasible(held) is not None)
+    refused = held is None or (autopilot == "px4" and infeasible(held, firmware_of(autopilot)) is not None)
     rejected = {finding.rule for finding in found if finding.effect == "rejected"}
     assert refused == bool(rejected & (UPLOAD | {"takeoff-not-first"}))

@@ -9,7 +9,7 @@ import pytest
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
-from gcs_windplan.mission.path import Told, course_of
+from gcs_windplan.mission.path import CommandedSpeeds, course_of
 from tests.flight.test_duration import FRAME, HOME, HOME_AGAIN, at, free, mission, speed, takeoff
 
 one_centimetre = 0.01
@@ -26,7 +26,7 @@ def test_a_mission_in_moves():
     assert [(move.kind, move.item) for move in course.moves] == [
         ("take-off", 1), ("leg", 3), ("leg", 4), ("leg", 5), ("landing", 5),
     ]  # fmt: skip
-    assert course.moves[1].told == Told(ground=7)
+    assert course.moves[1].told == CommandedSpeeds(ground=7)
     assert course.moves[1].hold == 3.0
     assert [move.rests for move in course.moves[1:4]] == [True, True, True]
     assert course.moves[-1].end[2] == pytest.approx(HOME.altitude + 20)
@@ -57,7 +57,7 @@ def test_a_jump_for_ever_ahead_is_made_and_one_back_ends_it():
     assert [move.item for move in ahead.moves] == [1, 4]
     back = course_of(mission(at(0, 99), free(Command.DO_JUMP, 2, -1), at(0, 200)))
     assert [move.item for move in back.moves] == [1, 2]
-    assert "jumps for ever" in back.remarks[0]
+    assert "jumps back indefinitely" in back.remarks[0]
 
 
 def test_jumps_ahead_and_back_for_ever_end():
@@ -71,7 +71,7 @@ def test_a_fixed_wing_circles_glides_and_keeps_its_airspeed():
     course = course_of(mission(speed(18, 0), speed(9, 1), turns, land, vehicle_type="fixed-wing"))
     assert course.moves[1].circling == pytest.approx(2 * 2 * math.pi * 70)
     assert course.moves[1].radius == 70
-    assert course.moves[1].told == Told(ground=9, air=18)
+    assert course.moves[1].told == CommandedSpeeds(ground=9, air=18)
     assert course.moves[2].end[2] == pytest.approx(HOME.altitude)
     assert course.moves[3].start == course.moves[3].end
 

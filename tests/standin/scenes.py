@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Home
-from gcs_windplan.standin.airframe import ARDUCOPTER, PX4_MULTICOPTER, Airframe
-from gcs_windplan.standin.craft import Current, Reached, Said
-from gcs_windplan.standin.flight import Flight
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.standin.flight import SimulatedFlight
 from gcs_windplan.standin.items import StoredItem
+from gcs_windplan.standin.vehicle_state import Current, Reached, Said
 from gcs_windplan.standin.world import World
+from gcs_windplan.vehicle import MotionProfile
 from gcs_windplan.wind.analytic import Calm, ConstantWind
 
 from .speaking import RTL, SPEED, TAKEOFF, WAYPOINT
 
 HOME = Home(GeoPoint(36.5, -84.3), 300.0)
 FRAME = LocalFrame(HOME.point)
+COPTER = firmware_of("ardupilot", "multicopter")
+SWIFT = replace(COPTER.motion, airspeed=15.0)  # leans to 45°
 HOME_ITEM = StoredItem(0, WAYPOINT, x=365_000_000, y=-843_000_000, z=300.0)
 
 #: A mission file: over a hill, in wind.
@@ -70,7 +73,7 @@ class Scene:
     """A flight of a mission and what was seen of it. Item 0 is home, as on ArduPilot, unless it is PX4's."""
 
     items: list[StoredItem]
-    flight: Flight
+    flight: SimulatedFlight
     time: float = 0.0
     begins: list[tuple[int, float]] = field(default_factory=list)
     reached: list[int] = field(default_factory=list)
@@ -88,18 +91,18 @@ class Scene:
         self.collect()
 
     def collect(self) -> None:
-        for event in self.flight.craft.events:
+        for event in self.flight.state.events:
             if isinstance(event, Current):
                 self.begins.append((event.seq, self.time))
             elif isinstance(event, Reached):
                 self.reached.append(event.seq)
             elif isinstance(event, Said):
                 self.words.append((event.words, self.time))
-        self.flight.craft.events.clear()
+        self.flight.state.events.clear()
 
     def until_over(self, step: float = 0.02, longest: float = 5000.0) -> Scene:
         """Fly until the mission is complete or the motors stop."""
-        while self.time < longest and self.flight.craft.armed and not self.flight.run.complete:
+        while self.time < longest and self.flight.state.armed and not self.flight.run.complete:
             self.advance(step)
         assert self.time < longest, f"still on item {self.flight.current} after {longest} s"
         return self
@@ -122,13 +125,14 @@ class Scene:
 
 
 def scene(
-    items: Sequence[StoredItem], *, wind=None, airframe: Airframe | None = None, autopilot="ardupilot", terrain=None
+    items: Sequence[StoredItem], *, wind=None, profile: MotionProfile | None = None, autopilot="ardupilot", terrain=None
 ) -> Scene:
     """A flight of these items, ready on the ground."""
+    firmware = firmware_of(autopilot, "multicopter")
     held = [HOME_ITEM, *items] if autopilot == "ardupilot" else list(items)
-    frame = airframe or (ARDUCOPTER if autopilot == "ardupilot" else PX4_MULTICOPTER)
+    frame = profile or (SWIFT if autopilot == "ardupilot" else firmware.motion)
     world = World(HOME, FRAME, wind if wind is not None else Calm(), terrain)
-    return Scene(held, Flight(autopilot, frame, world, lambda: held))
+    return Scene(held, SimulatedFlight(firmware, frame, world, lambda: held))
 
 
 def fly(items: Sequence[StoredItem], step: float = 0.02, **changes) -> Scene:

@@ -86,23 +86,23 @@ def texts(messages: list[Any]) -> list[str]:
 
 def upload(server: MissionServer, items: list[Any], now: float, kind: int = MISSION) -> list[tuple[Any, ...]]:
     """Upload items (made by `item`, in their order); what the last answer was."""
-    answer = told(server.hear(count(len(items), kind), now))
+    answer = told(server.handle(count(len(items), kind), now))
     for message in items:
         assert answer[-1][0].startswith("REQUEST"), answer
         assert answer[-1][1] == message.seq
-        answer = told(server.hear(message, now))
+        answer = told(server.handle(message, now))
     return answer
 
 
 def download(server: MissionServer, now: float, kind: int = MISSION, as_int: bool = True) -> list[Any]:
     """Download what a vehicle holds, as messages."""
-    ((_, n),) = told(server.hear(request_list(kind), now))
+    ((_, n),) = told(server.handle(request_list(kind), now))
     items = []
     for seq in range(n):
-        (message,) = server.hear(request(seq, kind, as_int=as_int), now)
+        (message,) = server.handle(request(seq, kind, as_int=as_int), now)
         assert message.seq == seq
         items.append(message)
-    server.hear(ack(0, kind), now)
+    server.handle(ack(0, kind), now)
     return items
 
 

@@ -13,14 +13,13 @@ from hypothesis import strategies as st
 
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Home
-from gcs_windplan.standin.airframe import ARDUCOPTER
-from gcs_windplan.standin.flight import Flight
+from gcs_windplan.standin.flight import SimulatedFlight
 from gcs_windplan.standin.items import StoredItem
 from gcs_windplan.standin.world import world_at
 from gcs_windplan.terrain import Hill, hills
 from gcs_windplan.wind.field import Steady
 
-from .scenes import FRAME, HOME, Scene, at, fly, free, home_again, scene, speed, takeoff, wind_from
+from .scenes import COPTER, FRAME, HOME, SWIFT, Scene, at, fly, free, home_again, scene, speed, takeoff, wind_from
 from .speaking import DELAY, JUMP, LAND, LOITER_TIME, WAYPOINT
 
 a_tenth_of_a_second = 0.1  # [s]
@@ -52,7 +51,7 @@ def test_a_straight_leg_takes_its_length_by_the_commanded_ground_speed(wind, com
 
 
 def test_measured_5_metres_of_head_wind_at_30_degrees_of_lean():
-    flown = fly(ROW, wind=wind_from(5, 0), airframe=replace(ARDUCOPTER, airspeed=10.16))
+    flown = fly(ROW, wind=wind_from(5, 0), profile=COPTER.motion)
     assert flown.seconds[MIDDLE] == pytest.approx(1500 / 5.16, abs=a_tenth_of_a_second)
 
 
@@ -94,8 +93,8 @@ def test_take_off_and_return_as_measured():
     assert flown.seconds[1] == pytest.approx(30.6, abs=0.2)
     assert flown.begins[1][1] - flown.when("Lifted off") == pytest.approx(60 / 2.5 + 2.2, abs=0.05)
     assert flown.seconds[3] == pytest.approx(66, abs=2.0)
-    assert not flown.flight.craft.armed
-    assert flown.flight.craft.body.place == pytest.approx((0, 0, 300), abs=one_decimetre)
+    assert not flown.flight.state.armed
+    assert flown.flight.state.body.place == pytest.approx((0, 0, 300), abs=one_decimetre)
 
 
 def test_return_from_far_as_fitted():
@@ -109,9 +108,9 @@ def test_a_low_return_climbs_first_and_knows_no_commanded_speed():
     while flown.flight.current < 4:
         flown.advance(0.1)
     begin, highest = flown.time, 0.0
-    while flown.flight.craft.armed:
+    while flown.flight.state.armed:
         flown.advance(0.1)
-        highest = max(highest, flown.flight.craft.body.altitude)
+        highest = max(highest, flown.flight.state.body.altitude)
     assert highest == pytest.approx(315.0, abs=one_decimetre)
     assert flown.time - begin < 100 + 60  # and not the 250 s of 4 m/s
 
@@ -122,7 +121,7 @@ def test_it_passes_over_every_waypoint():
     nearest = dict.fromkeys(range(len(places)), math.inf)
     while not flown.flight.run.complete:
         flown.advance(0.01)
-        body = flown.flight.craft.body
+        body = flown.flight.state.body
         for i, (east, north) in enumerate(places):
             gap = math.dist(body.place, (east, north, 380 + i))
             nearest[i] = min(nearest[i], gap)
@@ -137,7 +136,7 @@ def test_the_time_does_not_depend_on_how_often_the_clock_is_asked():
         flown = scene(items, wind=wind_from(6, 200)).start()
         while not flown.flight.run.complete:
             flown.advance(step)
-        ends.append(flown.flight.craft.body.clock - flown.time)
+        ends.append(flown.flight.state.body.clock - flown.time)
         # the clock goes on to the end of the last step; what counts is when the last item was reached
     finer = fly(items, wind=wind_from(6, 200), step=0.001).time
     for step in (0.01, 0.1):
@@ -157,7 +156,7 @@ def test_it_stops_for_holds_delays_and_loitering():
     still = 0.0
     while flown.flight.current < 5:
         flown.advance(0.02)
-        if flown.flight.current > 1 and flown.flight.craft.body.speed == 0:
+        if flown.flight.current > 1 and flown.flight.state.body.speed == 0:
             still += 0.02
     assert still == pytest.approx(7 + 20 + 5 + 2 * 0.62, abs=0.1)  # and what each start from rest takes to settle
     assert flown.seconds[4] == pytest.approx(5.0, abs=0.05)
@@ -167,7 +166,7 @@ def test_a_delay_until_a_time_of_day():
     from datetime import UTC, datetime
 
     flown = scene([takeoff(), free(DELAY, -1, 12, 2, 0), at(0, 100)])
-    world = flown.flight.craft.world
+    world = flown.flight.state.world
     flown.flight.settle(replace(world, departure=datetime(2026, 5, 1, 12, 0, tzinfo=UTC)))
     flown.start().until_over()
     assert flown.begins[2][1] == pytest.approx(120.0, abs=a_tenth_of_a_second + 1.0)
@@ -179,7 +178,7 @@ def test_turns_around_a_place(radius):
     angles = []
     while flown.flight.current < 3:
         flown.advance(0.1)
-        body = flown.flight.craft.body
+        body = flown.flight.state.body
         if flown.flight.current == 2 and math.hypot(body.east, body.north - 200) < 20.01:
             angles.append(math.atan2(body.east, body.north - 200))
     turned = np.unwrap(angles)
@@ -217,8 +216,8 @@ def test_a_jump_for_ever_and_one_to_a_tag():
 def test_a_mission_that_goes_round_does_not_hold_up_the_clock(round_trip):
     flown = scene(round_trip).start()
     flown.advance(500.0)
-    assert flown.flight.craft.body.clock == pytest.approx(500.0)
-    assert flown.flight.craft.body.altitude == pytest.approx(380.0)
+    assert flown.flight.state.body.clock == pytest.approx(500.0)
+    assert flown.flight.state.body.altitude == pytest.approx(380.0)
 
 
 def test_a_speed_is_in_force_from_the_next_leg_on():
@@ -244,14 +243,14 @@ def test_climb_and_descent_can_be_commanded():
 def test_measured_a_speed_is_lost_on_leaving_the_mission():
     flown = scene([takeoff(), speed(4), *ROW[1:]]).start()
     flown.advance(120.0)
-    assert (flown.flight.current, flown.flight.craft.body.speed) == (3, pytest.approx(4.0))
+    assert (flown.flight.current, flown.flight.state.body.speed) == (3, pytest.approx(4.0))
     flown.flight.stay()
     flown.advance(20.0)
-    assert flown.flight.craft.body.speed == 0
+    assert flown.flight.state.body.speed == 0
     assert flown.flight.fly_mission() is None
     flown.advance(15.0)
     assert flown.flight.current == 3
-    assert flown.flight.craft.body.speed == pytest.approx(10.0)
+    assert flown.flight.state.body.speed == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize("distance", [300.0, 100.0])
@@ -261,11 +260,11 @@ def test_conditions_put_off_what_stands_behind_them(distance):
     while flown.flight.current < 5:
         flown.advance(0.1)
     while flown.flight.run.waits_for_condition:
-        assert flown.flight.craft.body.speed == pytest.approx(10.0, abs=0.5)
+        assert flown.flight.state.body.speed == pytest.approx(10.0, abs=0.5)
         flown.advance(0.1)
-    assert flown.flight.craft.body.north == pytest.approx(2000 - distance, abs=7.0)
+    assert flown.flight.state.body.north == pytest.approx(2000 - distance, abs=7.0)
     flown.advance(8.0)
-    assert flown.flight.craft.body.speed == pytest.approx(5.0)
+    assert flown.flight.state.body.speed == pytest.approx(5.0)
 
 
 def test_a_condition_of_time():
@@ -273,9 +272,9 @@ def test_a_condition_of_time():
     while flown.flight.current < 5:
         flown.advance(0.1)
     flown.advance(29.0)
-    assert flown.flight.craft.body.speed == pytest.approx(10.0)
+    assert flown.flight.state.body.speed == pytest.approx(10.0)
     flown.advance(10.0)
-    assert flown.flight.craft.body.speed == pytest.approx(5.0)
+    assert flown.flight.state.body.speed == pytest.approx(5.0)
 
 
 def test_measured_arducopter_names_the_item_that_is_done_after_a_waypoint():
@@ -293,9 +292,9 @@ def test_measured_zero_altitude_and_zero_place_mean_here():
 
 def test_a_landing_ends_the_mission_on_the_ground():
     flown = fly([takeoff(), at(0, 200), at(100, 300, 0, command=LAND)])
-    body = flown.flight.craft.body
+    body = flown.flight.state.body
     assert body.place == pytest.approx((100, 300, 300), abs=one_decimetre)
-    assert (flown.flight.craft.armed, flown.flight.craft.landed) == (False, True)
+    assert (flown.flight.state.armed, flown.flight.state.landed) == (False, True)
     assert flown.reached == [1, 2, 3]
     assert flown.flight.current == 0
 
@@ -316,9 +315,9 @@ def test_it_lands_on_the_terrain_and_flies_above_it():
     flown.start()
     while flown.flight.current < 4:
         flown.advance(0.05)
-    assert flown.flight.craft.body.altitude == pytest.approx(top + 60, abs=one_decimetre)
+    assert flown.flight.state.body.altitude == pytest.approx(top + 60, abs=one_decimetre)
     flown.until_over()
-    assert flown.flight.craft.body.altitude == pytest.approx(top, abs=one_decimetre)
+    assert flown.flight.state.body.altitude == pytest.approx(top, abs=one_decimetre)
 
 
 def test_why_a_mission_is_not_flown():
@@ -334,7 +333,7 @@ def test_why_a_mission_is_not_flown():
 def test_a_wind_stronger_than_the_airspeed_holds_it_where_it_is():
     flown = scene(ROW, wind=wind_from(16, 0)).start()
     flown.advance(200.0)
-    assert flown.flight.craft.body.place == pytest.approx((0, 0, 380), abs=one_decimetre)
+    assert flown.flight.state.body.place == pytest.approx((0, 0, 380), abs=one_decimetre)
     assert flown.flight.current == 2
 
 
@@ -348,26 +347,26 @@ def test_a_wind_stronger_than_the_airspeed_holds_it_where_it_is():
 def test_it_never_flies_faster_than_told_nor_than_the_air_lets_it(places, blows, from_deg, commanded):
     wind = wind_from(blows, from_deg)
     flown = scene([takeoff(), speed(commanded), *(at(*place) for place in places)], wind=wind).start()
-    craft = flown.flight.craft
+    state = flown.flight.state
     while not flown.flight.run.complete and flown.time < 3000:
         flown.advance(0.5)
-        east, north, up = craft.body.velocity
+        east, north, up = state.body.velocity
         level = math.hypot(east, north)
         assert level <= commanded + 1e-6
-        assert -craft.airframe.descent - 1e-6 <= up <= craft.airframe.climb + 1e-6
+        assert -state.profile.descent - 1e-6 <= up <= state.profile.climb + 1e-6
         if level > 0.1:
-            assert math.hypot(east - wind.east, north - wind.north) <= craft.airframe.airspeed + 1e-6
+            assert math.hypot(east - wind.east, north - wind.north) <= state.profile.airspeed + 1e-6
     assert flown.flight.run.complete
-    assert craft.body.place == pytest.approx((*places[-1][:2], 300 + places[-1][2]), abs=one_decimetre)
+    assert state.body.place == pytest.approx((*places[-1][:2], 300 + places[-1][2]), abs=one_decimetre)
 
 
 def test_px4_flies_to_the_place_of_its_takeoff_and_lifts_off_without_one():
     flown = fly([at(30, 40, 20, command=22), at(0, 100, 20)], autopilot="px4")
     assert flown.order == [0, 1]
-    assert flown.seconds[0] == pytest.approx(1 + 20 / 3 + 1 + 50 / 5 + 4.3 + 0.6, abs=1.0)
+    assert flown.seconds[0] == pytest.approx(1 + 2 * math.sqrt(20 * 10.4 / 3) + 50 / 5 + 5 / 3 + 3 / 4, abs=0.1)
     flown = fly([at(0, 50, 20), at(0, 100, 20)], autopilot="px4")
     assert flown.order == [0, 1]
-    assert flown.flight.craft.body.place == pytest.approx((0, 100, 320), abs=one_decimetre)
+    assert flown.flight.state.body.place == pytest.approx((0, 100, 320), abs=one_decimetre)
 
 
 def test_jumping_to_an_item():
@@ -378,7 +377,7 @@ def test_jumping_to_an_item():
     flown.advance(500.0)
     assert flown.flight.run.complete
     assert not flown.flight.jump(9)
-    assert flown.flight.craft.body.north == pytest.approx(4000, abs=one_decimetre)
+    assert flown.flight.state.body.north == pytest.approx(4000, abs=one_decimetre)
 
 
 def test_a_new_mission_in_flight_is_taken_up_after_the_present_leg():
@@ -388,7 +387,7 @@ def test_a_new_mission_in_flight_is_taken_up_after_the_present_leg():
     flown.items[2:] = [at(300, 0), at(300, 600)]
     flown.until_over()
     assert flown.order == [1, 2, 3]
-    assert flown.flight.craft.body.place == pytest.approx((300, 600, 380), abs=one_decimetre)
+    assert flown.flight.state.body.place == pytest.approx((300, 600, 380), abs=one_decimetre)
     flown.items.clear()
     flown.flight.run.complete = False
     flown.advance(1.0)
@@ -403,30 +402,30 @@ def test_guided_flight():
     assert flight.go_to((100, 0, 320)) == "it stands on the ground"
     assert flight.take_off(320.0) is None
     flown.advance(30.0)
-    assert flight.craft.body.place == pytest.approx((0, 0, 320))
+    assert flight.state.body.place == pytest.approx((0, 0, 320))
     assert flight.take_off(330.0) == "it is flying already"
     assert flight.go_to((100, 0, 340)) is None
     flown.advance(30.0)
-    assert flight.craft.body.place == pytest.approx((100, 0, 340))
+    assert flight.state.body.place == pytest.approx((100, 0, 340))
     assert flight.fly_there(at(0, 100, 50))
     flown.advance(60.0)
-    assert flight.craft.body.place == pytest.approx((0, 100, 350), abs=one_decimetre)
+    assert flight.state.body.place == pytest.approx((0, 100, 350), abs=one_decimetre)
     assert flight.go_to((1e9, 0, 340)) == "that is too far away"
     flight.stay()
     assert not flight.fly_there(at(0, 0))
     assert flight.disarm() == "it is flying"
     flight.land()
     flown.advance(120.0)
-    assert (flight.craft.landed, flight.craft.armed) == (True, False)
+    assert (flight.state.landed, flight.state.armed) == (True, False)
     flight.arm()
     assert flight.disarm() is None
 
 
 def test_home_is_where_it_is_armed():
     flown = fly([takeoff(), at(0, 200), at(0, 200, 0, command=LAND)])
-    assert flown.flight.craft.home == HOME
+    assert flown.flight.state.home == HOME
     flown.flight.arm()
-    assert FRAME.to_local(*_degrees(flown.flight.craft.home.point))[0] == pytest.approx((0, 200), abs=one_decimetre)
+    assert FRAME.to_local(*_degrees(flown.flight.state.home.point))[0] == pytest.approx((0, 200), abs=one_decimetre)
 
 
 def _degrees(point: GeoPoint) -> tuple[float, float]:
@@ -439,7 +438,7 @@ def test_disarmed_in_the_air_it_falls():
     flown.flight.disarm(force=True)
     flown.collect()
     assert flown.words[-1][0] == "Disarmed in the air: it fell"
-    assert flown.flight.craft.body.altitude == 300.0
+    assert flown.flight.state.body.altitude == 300.0
 
 
 @dataclass(frozen=True)
@@ -459,7 +458,7 @@ class Ending(Steady):
 
 def test_where_the_wind_is_not_known_the_last_one_goes_on():
     flown = scene(ROW, wind=Ending()).start()
-    body = flown.flight.craft.body
+    body = flown.flight.state.body
     assert body.wind == (0.0, -3.0)
     flown.advance(100.0)
     assert body.air.trouble == "the wind is not known at 380 m above sea level"
@@ -471,10 +470,10 @@ def test_where_the_wind_is_not_known_the_last_one_goes_on():
 def _as_measured(flight) -> tuple[float, list[tuple[float, float]]]:
     """A measured mission flown by the stand-in: its total, and each leg's duration beside the measured one."""
     p = flight["params"]
-    airframe = replace(
-        ARDUCOPTER,
+    profile = replace(
+        SWIFT,
         airspeed=10.16 if p["ANGLE_MAX"] == 3000 else 15.0,
-        cruise=p["WPNAV_SPEED"] / 100,
+        speed=p["WPNAV_SPEED"] / 100,
         climb=p["WPNAV_SPEED_UP"] / 100,
         descent=p["WPNAV_SPEED_DN"] / 100,
         radius=p["WPNAV_RADIUS"] / 100,
@@ -489,7 +488,7 @@ def _as_measured(flight) -> tuple[float, list[tuple[float, float]]]:
     ]  # fmt: skip
     home = Home(GeoPoint(flight["home"]["lat"], flight["home"]["lon"]), flight["home"]["alt"])
     wind = wind_from(flight["wind"]["speed"], flight["wind"]["from_deg"])
-    flown = Scene(items, Flight("ardupilot", airframe, world_at(home, wind), lambda: items)).start().until_over(0.05)
+    flown = Scene(items, SimulatedFlight(COPTER, profile, world_at(home, wind), lambda: items)).start().until_over(0.05)
     legs = [(flown.seconds[leg["to_seq"]], leg["duration"]) for leg in flight["legs"]]
     begins = dict(flown.begins)
     behind = [time for seq, time in flown.begins if seq > flight["legs"][-1]["to_seq"]]

@@ -22,10 +22,11 @@ from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.link.transport import open_transport
 from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7, plain_frame
-from gcs_windplan.standin.airframe import airframe_of
+from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.standin.items import FENCE, MISSION, RALLY
 from gcs_windplan.standin.service import serve
-from gcs_windplan.standin.vehicle import StandIn, StandInOptions
+from gcs_windplan.standin.standin import StandIn
+from gcs_windplan.standin.vehicle import StandInOptions
 from gcs_windplan.standin.world import world_at
 
 from .loopback import LINE, free_port, raw_items, until
@@ -39,7 +40,8 @@ def standing_in(address: str, autopilot: str = "ardupilot", **options: Any) -> I
     """A stand-in on a line, in a thread, until the block ends."""
     transport = open_transport(address)
     log: list[str] = []
-    made = StandInOptions(autopilot, airframe_of(autopilot), world_at(HOME), **options)
+    firmware = firmware_of(autopilot, "multicopter")
+    made = StandInOptions(firmware, firmware.motion, world_at(HOME), **options)
     vehicle = StandIn(made, time.monotonic(), log.append)
     stop = threading.Event()
     thread = threading.Thread(
@@ -191,8 +193,8 @@ def test_mavproxy_loads_lists_saves_and_flies(tmp_path) -> None:
         station.type("mode auto")
         until(lambda: there.vehicle.mode.name == "AUTO", "AUTO")
         station.type("arm throttle")
-        until(lambda: not there.vehicle.flight.craft.landed, "a vehicle in the air")
+        until(lambda: not there.vehicle.flight.state.landed, "a vehicle in the air")
         until(lambda: there.vehicle.flight.current == 5, "the way home")
-        until(lambda: not there.vehicle.flight.craft.armed, "the end of the flight")
+        until(lambda: not there.vehicle.flight.state.armed, "the end of the flight")
         station.type("wp clear")
         until(lambda: there.vehicle.server.items[MISSION] == [], "an empty vehicle")

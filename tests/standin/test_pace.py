@@ -6,18 +6,19 @@ import math
 
 import pytest
 
-from gcs_windplan.standin.airframe import ARDUCOPTER
-from gcs_windplan.standin.pace import corner_speed, exit_speed, leg_pace, peak_speed, ramp_seconds, turn_between
+from gcs_windplan.mission.firmware.ardupilot import MOTION as ARDUCOPTER
+from gcs_windplan.standin.pace import corner_speed, exit_speed, leg_pace, turn_between
+from gcs_windplan.vehicle.pace import peak_speed, ramp_seconds
 
 
 @pytest.mark.parametrize(("speed", "seconds"), [(4, 4.3), (5, 4.8), (7, 5.6), (10, 6.8), (14, 8.4)])
 def test_fitted_seconds_to_a_speed(speed, seconds):
-    assert ramp_seconds(speed, 2.5) == pytest.approx(seconds, abs=0.05)
+    assert ramp_seconds(speed, 2.5, ARDUCOPTER.jerk, ARDUCOPTER.rise) == pytest.approx(seconds, abs=0.05)
 
 
 @pytest.mark.parametrize(("speed", "length"), [(5, 24), (10, 68), (14, 118)])
 def test_fitted_length_that_a_speed_needs(speed, length):
-    assert peak_speed(length, 2.5) == pytest.approx(speed, abs=0.05)
+    assert peak_speed(length, 2.5, ARDUCOPTER.jerk, ARDUCOPTER.rise) == pytest.approx(speed, abs=0.05)
     assert leg_pace(ARDUCOPTER, length * 1.02, 0.0, speed).speed == pytest.approx(speed)
     assert leg_pace(ARDUCOPTER, length / 2, 0.0, speed).speed < speed
 
@@ -32,7 +33,7 @@ def test_fitted_length_that_a_speed_needs(speed, length):
 def test_fitted_cost_of_a_corner(speed, turn, cost):
     """Slowing from the pace to the corner's speed and back, against passing at the pace [s]."""
     pace = leg_pace(ARDUCOPTER, 1000.0, 0.0, speed)
-    slow = corner_speed(pace, math.radians(turn), ARDUCOPTER.radius)
+    slow = corner_speed(pace, math.radians(turn), ARDUCOPTER)
     lost = 2 * (speed - slow) ** 2 / (2 * pace.acceleration * speed)
     assert lost == pytest.approx(cost, abs=0.1)
 

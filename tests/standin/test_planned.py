@@ -10,13 +10,13 @@ import pytest
 from gcs_windplan.jobs.missionfile import read_mission
 from gcs_windplan.link.firmware import outgoing_items
 from gcs_windplan.link.wire import item_to_message
+from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.planner import plan_route
-from gcs_windplan.standin.airframe import airframe_of
-from gcs_windplan.standin.ardupilot_store import keep as keep_in_ardupilot
-from gcs_windplan.standin.flight import Flight
+from gcs_windplan.standin.flight import SimulatedFlight
 from gcs_windplan.standin.items import MISSION, StoredItem, read_item
-from gcs_windplan.standin.px4_store import keep as keep_in_px4
+from gcs_windplan.standin.storage import store
+from gcs_windplan.standin.vehicle import planned_profile
 from gcs_windplan.standin.world import planned_world
 
 from .scenes import HILL, Scene
@@ -30,18 +30,21 @@ def test_a_planned_mission_is_flown_as_planned(autopilot, tmp_path) -> None:
     request = plan.request
     world = planned_world(request)
     assert world.home.altitude == pytest.approx(plan.waypoints[0].altitude - plan.waypoints[0].above_ground, abs=0.01)
-    keep = keep_in_ardupilot if autopilot == "ardupilot" else keep_in_px4
-    sent = outgoing_items(mission_of(plan), "mission", autopilot)
-    held = [keep(read_item(item_to_message(item, seq, 1, 1, MISSION)), MISSION) for seq, item in enumerate(sent)]
+    firmware = firmware_of(autopilot, "multicopter")
+    sent = outgoing_items(mission_of(plan), "mission", firmware)
+    messages = [item_to_message(item, seq, 1, 1, MISSION) for seq, item in enumerate(sent)]
+    held = [store(read_item(message), MISSION, firmware) for message in messages]
     if autopilot == "ardupilot":
         held[0] = StoredItem(0, 16, x=held[0].x, y=held[0].y, z=world.home.altitude)
-    flown = Scene(held, Flight(autopilot, airframe_of(autopilot, request.vehicle), world, lambda: held)).start()
-    craft = flown.flight.craft
+    flown = Scene(
+        held, SimulatedFlight(firmware, planned_profile(firmware, request.vehicle), world, lambda: held)
+    ).start()
+    state = flown.flight.state
     lowest, nearest = math.inf, dict.fromkeys(range(len(plan.waypoints)), math.inf)
     en_route: list[float] = []
-    while craft.armed and flown.time < 3000:
+    while state.armed and flown.time < 3000:
         flown.advance(0.05)
-        body = craft.body
+        body = state.body
         for waypoint in plan.waypoints:
             gap = math.dist(body.place, (waypoint.east, waypoint.north, waypoint.altitude))
             nearest[waypoint.number - 1] = min(nearest[waypoint.number - 1], gap)
@@ -54,6 +57,6 @@ def test_a_planned_mission_is_flown_as_planned(autopilot, tmp_path) -> None:
     # ArduCopter loses some seconds at rest and at corners, which the plan does not count
     seconds = en_route[-1] - en_route[0]
     assert plan.totals.seconds - 1 < seconds < plan.totals.seconds + 4 + 3 * len(plan.waypoints)
-    assert body.altitude == pytest.approx(craft.ground(body.east, body.north), abs=0.01)
+    assert body.altitude == pytest.approx(state.ground(body.east, body.north), abs=0.01)
     goal = plan.waypoints[-1]
     assert math.dist(body.place[:2], (goal.east, goal.north)) < 0.1

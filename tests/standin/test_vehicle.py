@@ -17,9 +17,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.mission import Home
-from gcs_windplan.standin.airframe import ARDUCOPTER, airframe_of
+from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.standin.rules import ServerOptions
-from gcs_windplan.standin.vehicle import StandIn, StandInOptions
+from gcs_windplan.standin.standin import StandIn
+from gcs_windplan.standin.vehicle import StandInOptions
 from gcs_windplan.standin.world import World, simulator_world, world_at
 
 from . import speaking as say
@@ -38,7 +39,9 @@ class Bench:
         self.log: list[str] = []
         self.heard: list[Any] = []
         world = world if world is not None else world_at(HOME, wind)
-        made = StandInOptions(autopilot, airframe_of(autopilot), world, **options)
+        firmware = firmware_of(autopilot, "multicopter")
+        profile = replace(firmware.motion, airspeed=15.0)  # leans to 45°
+        made = StandInOptions(firmware, profile, world, **options)
         self.vehicle = StandIn(made, self.now, self.log.append, calendar=lambda: 1_700_000_000.0 + self.now)
 
     def wait(self, seconds: float, step: float = 0.1) -> list[Any]:
@@ -51,7 +54,7 @@ class Bench:
         return said
 
     def tell(self, message: Any, by=say.US) -> list[Any]:
-        answer = self.vehicle.hear(say.said(message, by), self.now)
+        answer = self.vehicle.handle(say.said(message, by), self.now)
         self.heard += answer
         return answer
 
@@ -64,11 +67,11 @@ class Bench:
         return ack.result, rest
 
     def upload(self, items: list[Any]) -> None:
-        answer = self.vehicle.hear(say.count(len(items)), self.now)
+        answer = self.vehicle.handle(say.count(len(items)), self.now)
         for seq, item in enumerate(items):
             assert answer[0].get_type().startswith("MISSION_REQUEST"), answer
             message = say.item(seq, item.command, item.params, frame=item.frame, x=item.x, y=item.y, z=item.z)
-            answer = self.vehicle.hear(message, self.now)
+            answer = self.vehicle.handle(message, self.now)
         self.heard += answer
         assert ("ACK", 0) in say.told(answer)
 
@@ -187,7 +190,7 @@ def test_what_is_meant_for_others_is_not_answered():
     assert bench.tell(mavlink.MAVLink_command_long_message(2, 1, arm, 0, 1, 0, 0, 0, 0, 0, 0)) == []
     assert bench.tell(mavlink.MAVLink_command_long_message(1, 154, arm, 0, 1, 0, 0, 0, 0, 0, 0)) == []
     assert bench.tell(mavlink.MAVLink_param_request_list_message(2, 1)) == []
-    assert not bench.vehicle.flight.craft.armed
+    assert not bench.vehicle.flight.state.armed
 
 
 def test_arducopters_parameters():
@@ -213,7 +216,7 @@ def test_setting_a_parameter_changes_how_it_flies():
     bench = Bench()
     (value,) = bench.tell(mavlink.MAVLink_param_set_message(1, 1, b"WPNAV_SPEED", 500, 9))
     assert value.param_value == 500
-    assert bench.vehicle.flight.craft.airframe == replace(ARDUCOPTER, cruise=5.0)
+    assert bench.vehicle.flight.state.profile == replace(firmware_of("ardupilot").motion, airspeed=15.0, speed=5.0)
     for nonsense in (math.nan, math.inf, -1.0):
         (value,) = bench.tell(mavlink.MAVLink_param_set_message(1, 1, b"WPNAV_SPEED", nonsense, 9))
         assert value.param_value == 500
@@ -230,14 +233,14 @@ def test_px4s_whole_parameters_travel_as_bytes():
     (value,) = bench.tell(mavlink.MAVLink_param_set_message(1, 1, b"GF_ACTION", one, 6))
     assert struct.unpack("<i", struct.pack("<f", value.param_value)) == (1,)
     (value,) = bench.tell(mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_CRUISE", 7.5, 9))
-    assert bench.vehicle.flight.craft.airframe.cruise == 7.5
+    assert bench.vehicle.flight.state.profile.speed == 7.5
 
 
 def test_armed_and_auto_it_flies_the_mission_to_its_end():
     bench = Bench(wind=wind_from(4, 270), speedup=10.0)
     bench.wait(3.0)
     bench.upload(LINE)
-    assert bench.last("STATUSTEXT").text.rstrip("\0") == "Flight plan received"
+    assert bench.last("STATUSTEXT").text.rstrip("\0") == "SimulatedFlight plan received"
     assert bench.command(mavlink.MAV_CMD_DO_SET_MODE, 1, COPTER_AUTO)[0] == ACCEPTED
     bench.wait(2.0)
     assert bench.last("HEARTBEAT").custom_mode == COPTER_AUTO
@@ -338,7 +341,7 @@ def test_speedup_is_flown_and_told_by_the_vehicles_own_clock():
     fast.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     fast.wait(4.0)
     assert fast.last("GLOBAL_POSITION_INT").time_boot_ms - begin == pytest.approx(80_000, abs=6_000)
-    assert fast.vehicle.flight.craft.body.place == pytest.approx(slow.vehicle.flight.craft.body.place, abs=0.01)
+    assert fast.vehicle.flight.state.body.place == pytest.approx(slow.vehicle.flight.state.body.place, abs=0.01)
 
 
 def test_commands_in_flight():
@@ -361,8 +364,8 @@ def test_commands_in_flight():
     bench.wait(1.1)
     assert bench.last("HEARTBEAT").custom_mode == COPTER_RTL
     bench.wait(400.0)
-    assert not bench.vehicle.flight.craft.armed
-    assert bench.vehicle.flight.craft.body.place == pytest.approx((0, 0, 300), abs=0.01)
+    assert not bench.vehicle.flight.state.armed
+    assert bench.vehicle.flight.state.body.place == pytest.approx((0, 0, 300), abs=0.01)
 
 
 def test_guided_flight_by_command():
@@ -384,16 +387,16 @@ def test_guided_flight_by_command():
     (ack,) = bench.tell(reposition)
     assert ack.result == ACCEPTED
     bench.wait(40.0)
-    assert bench.vehicle.flight.craft.body.place == pytest.approx((100, 50, 335), abs=0.1)
+    assert bench.vehicle.flight.state.body.place == pytest.approx((100, 50, 335), abs=0.1)
     assert bench.command(mavlink.MAV_CMD_DO_REPOSITION, -1, 0, 0, 0, 99, 0, 50)[0] == DENIED
     there = at(0, 0, 30)
     fly_there = mavlink.MAVLink_mission_item_int_message(1, 1, 0, 3, 16, 2, 1, 0, 0, 0, 0, there.x, there.y, 30.0, 0)
     assert say.told(bench.tell(fly_there)) == [("ACK", 0)]
     bench.wait(60.0)
-    assert bench.vehicle.flight.craft.body.place == pytest.approx((0, 0, 330), abs=0.1)
+    assert bench.vehicle.flight.state.body.place == pytest.approx((0, 0, 330), abs=0.1)
     assert bench.command(mavlink.MAV_CMD_NAV_LAND)[0] == ACCEPTED
     bench.wait(120.0)
-    assert not bench.vehicle.flight.craft.armed
+    assert not bench.vehicle.flight.state.armed
 
 
 def test_why_it_does_not_start_is_told():
@@ -418,7 +421,7 @@ def test_px4_starts_by_mission_start_alone():
     assert bench.last("HEARTBEAT").custom_mode == PX4_MISSION
     bench.wait(20.0)
     assert [m.seq for m in bench.heard if m.get_type() == "MISSION_ITEM_REACHED"] == [0, 1, 2]
-    assert not bench.vehicle.flight.craft.armed
+    assert not bench.vehicle.flight.state.armed
     assert bench.command(mavlink.MAV_CMD_DO_SET_MODE, 29, 4, 5)[0] == ACCEPTED
     assert bench.vehicle.mode.name == "Return"
 
@@ -429,7 +432,7 @@ def test_px4_takes_off_when_armed():
     bench.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     assert bench.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, math.nan, math.nan, math.nan, 330)[0] == ACCEPTED
     bench.wait(30.0)
-    assert bench.vehicle.flight.craft.body.altitude == 330.0
+    assert bench.vehicle.flight.state.body.altitude == 330.0
     assert bench.vehicle.mode.name == "Takeoff"
 
 
@@ -440,7 +443,7 @@ def test_fly_starts_by_itself():
     assert "armed, flying the mission" in bench.log
     bench.wait(15.0)
     assert bench.last("MISSION_CURRENT").mission_state == mavlink.MISSION_STATE_ACTIVE
-    assert not bench.vehicle.flight.craft.landed
+    assert not bench.vehicle.flight.state.landed
     unflyable = Bench(fly=True)
     unflyable.wait(3.0)
     unflyable.upload([home(), at(0, 100)])
@@ -449,7 +452,7 @@ def test_fly_starts_by_itself():
 
 @pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
 def test_told_no_place_it_stands_where_the_first_mission_begins(autopilot):
-    bench = Bench(autopilot, simulator_world(autopilot))
+    bench = Bench(autopilot, simulator_world(firmware_of(autopilot, "multicopter")))
     bench.wait(3.0)
     assert abs(bench.last("GLOBAL_POSITION_INT").lat) != 365_000_000
     first = at(0, 0, 20, command=say.TAKEOFF)
@@ -472,7 +475,7 @@ def test_a_reboot():
     bench.wait(1.0)
     assert bench.last("HEARTBEAT").system_status == mavlink.MAV_STATE_BOOT
     assert bench.last("GLOBAL_POSITION_INT").time_boot_ms < 1500
-    assert say.told(bench.vehicle.hear(say.count(2), bench.now)) == [("ACK", 4)]
+    assert say.told(bench.vehicle.handle(say.count(2), bench.now)) == [("ACK", 4)]
     bench.wait(2.0)
     assert len(bench.vehicle.server.items[0]) == 5
     flying = in_flight(None)
@@ -481,9 +484,9 @@ def test_a_reboot():
 
 def test_measured_clearing_in_auto_is_refused():
     bench = in_flight(None)
-    assert say.told(bench.vehicle.hear(say.clear(), bench.now)) == [("ACK", 1)]
+    assert say.told(bench.vehicle.handle(say.clear(), bench.now)) == [("ACK", 1)]
     bench.command(mavlink.MAV_CMD_NAV_LOITER_UNLIM)
-    assert say.told(bench.vehicle.hear(say.clear(), bench.now)) == [("ACK", 0)]
+    assert say.told(bench.vehicle.handle(say.clear(), bench.now)) == [("ACK", 0)]
 
 
 def test_setting_home():
@@ -493,7 +496,7 @@ def test_setting_home():
     assert home_now.latitude == pytest.approx(365_010_000, abs=20)  # COMMAND_LONG has floats of 32 bits
     assert bench.command(mavlink.MAV_CMD_DO_SET_HOME, 0, 0, 0, 0, 99, 0, 0)[0] == DENIED
     bench.command(mavlink.MAV_CMD_DO_SET_HOME, 1)
-    assert bench.vehicle.flight.craft.home == HOME
+    assert bench.vehicle.flight.state.home == HOME
 
 
 def test_its_clock_begins_with_the_missions_departure():
@@ -570,14 +573,14 @@ def test_no_message_breaks_it(autopilot, story):
     for message, pause in story:
         bench.tell(message)
         bench.wait(pause, step=pause or 1.0)
-    answer = bench.vehicle.hear(say.request_list(), bench.now + 30)
+    answer = bench.vehicle.handle(say.request_list(), bench.now + 30)
     assert all(Codec(1, 1).encode(message) for message in [*bench.heard, *answer])
 
 
 def test_a_capacity_of_its_own():
     bench = Bench(server=ServerOptions(capacity=3))
     bench.wait(3.0)
-    assert say.told(bench.vehicle.hear(say.count(4), bench.now)) == [("ACK", 4)]
+    assert say.told(bench.vehicle.handle(say.count(4), bench.now)) == [("ACK", 4)]
 
 
 def test_a_speed_command_between_legs_reaches_the_telemetry():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,21 +14,22 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.vehicle import (
-    ARDUCOPTER_PACE,
-    PX4_PACE,
-    Pace,
-    as_flown,
-    landing_seconds,
-    return_seconds,
-    takeoff_seconds,
-)
-from gcs_windplan.vehicle.pace import overlap_seconds, peak_speed, ramp_seconds
+from gcs_windplan.mission.firmware.ardupilot import MOTION as ARDUCOPTER
+from gcs_windplan.mission.firmware.px4 import MOTION as PX4
+from gcs_windplan.vehicle import pace as law
 
 as_printed = 0.051  # [s] the figures are given to a tenth
 one_second = 1.0
 a_microsecond = 1e-6  # [s]
-SWIFT = replace(ARDUCOPTER_PACE, airspeed=15.0)  # leans to 45°
+as_flown = partial(law.as_flown, pace=ARDUCOPTER)
+takeoff_seconds = partial(law.takeoff_seconds, pace=ARDUCOPTER)
+landing_seconds = partial(law.landing_seconds, pace=ARDUCOPTER)
+return_seconds = partial(law.return_seconds, pace=ARDUCOPTER)
+ramp_seconds, peak_speed, overlap_seconds = (
+    partial(function, jerk=ARDUCOPTER.jerk, rise=ARDUCOPTER.rise)
+    for function in (law.ramp_seconds, law.peak_speed, law.overlap_seconds)
+)
+SWIFT = replace(ARDUCOPTER, airspeed=15.0)  # leans to 45°
 WAYPOINT, SPEED = 16, 178
 
 
@@ -162,12 +164,12 @@ def test_a_return_against_the_wind():
 @pytest.mark.parametrize("wrong", [{"speed": 0}, {"climb": -1}, {"jerk": math.nan}, {"settle": -1}])
 def test_a_pace_checks_itself(wrong):
     with pytest.raises(InputError, match="must be above 0"):
-        replace(ARDUCOPTER_PACE, **wrong)
+        replace(ARDUCOPTER, **wrong)
 
 
 def test_an_acceleration_must_let_the_jerk_rise():
     with pytest.raises(InputError, match=r"jerk · rise, 0\.3 m/s²"):
-        Pace(vertical_acceleration=0.2)
+        replace(ARDUCOPTER, vertical_acceleration=0.2)
 
 
 @pytest.mark.parametrize(
@@ -198,7 +200,7 @@ def test_a_leg_of_no_length_is_a_stop():
 
 coordinates = st.tuples(st.floats(-500, 500), st.floats(-500, 500), st.floats(20, 120))
 routes = st.lists(coordinates, min_size=2, max_size=7).map(np.array)
-paces = st.sampled_from([ARDUCOPTER_PACE, SWIFT, PX4_PACE, replace(SWIFT, radius=5.0)])
+paces = st.sampled_from([ARDUCOPTER, SWIFT, PX4, replace(SWIFT, radius=5.0)])
 commands = st.floats(1.0, 18.0)
 
 
@@ -243,8 +245,8 @@ def test_a_collinear_waypoint_changes_nothing(commanded, share, track, climb, pa
 
 @given(st.floats(0.01, 3000), st.floats(0.5, 5), st.sampled_from([(1.0, 0.3), (4.0, 0.0), (1.0, 0.1)]))
 def test_the_peak_is_where_the_two_ramps_fill_the_leg(length, acceleration, jerk):
-    speed = peak_speed(length, acceleration, *jerk)
-    assert speed * ramp_seconds(speed, acceleration, *jerk) == pytest.approx(length)
+    speed = law.peak_speed(length, acceleration, *jerk)
+    assert speed * law.ramp_seconds(speed, acceleration, *jerk) == pytest.approx(length)
 
 
 @given(st.floats(0, 100), st.floats(0, 10), st.floats(0.5, 5))
@@ -259,7 +261,8 @@ def test_a_farther_corner_lets_ramps_overlap_longer(distance, more, acceleration
 def _as_measured(flight):
     """The flight's points from its take-off on, with speeds and holds, and its pace."""
     given = flight["params"]
-    pace = Pace(
+    pace = replace(
+        ARDUCOPTER,
         speed=given["WPNAV_SPEED"] / 100,
         climb=given["WPNAV_SPEED_UP"] / 100,
         descent=given["WPNAV_SPEED_DN"] / 100,
@@ -288,14 +291,14 @@ def test_twelve_missions_as_a_real_arducopter_flew_them(shared_data):
         points, speeds, holds, pace = _as_measured(flight)
         blows = math.radians(flight["wind"]["from_deg"])
         wind = -flight["wind"]["speed"] * np.array([math.sin(blows), math.cos(blows)])
-        flown = as_flown(points, speeds, holds, wind, pace)
+        flown = as_flown(points, speeds, holds, wind, pace=pace)
         measured = [leg["duration"] for leg in flight["legs"]]
         assert flown.total == pytest.approx(flight["total"], rel=0.011), flight["name"]
         assert flown.seconds == pytest.approx(measured, abs=one_second), flight["name"]
         errors += list(flown.seconds - measured)
-        returned = return_seconds(tuple(-points[-1, :2]), points[-1, 2], pace, tuple(wind))
+        returned = return_seconds(tuple(-points[-1, :2]), points[-1, 2], pace=pace, wind=tuple(wind))
         assert returned == pytest.approx(flight["rtl"]["to_disarm"], abs=0.6), flight["name"]
-        lifted = takeoff_seconds(points[0, 2], pace) - pace.spool_up
+        lifted = takeoff_seconds(points[0, 2], pace=pace) - pace.spool_up
         assert lifted == pytest.approx(flight["takeoff"]["liftoff_to_reached"], abs=0.1), flight["name"]
     assert len(errors) == 85
     assert math.sqrt(np.mean(np.square(errors))) < 0.21

@@ -14,6 +14,7 @@ from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.home import APART, first_place
 from gcs_windplan.assessment.rules.saying import Found, at_stop, metres
 from gcs_windplan.mission import Command, command_name
+from gcs_windplan.mission.firmware import firmware_of
 
 _LANDING_APART: Final = 5.0  # [m] the autopilot feels for the ground, but from another height
 
@@ -107,7 +108,7 @@ def _aloft(mission: Judged) -> str:
     """What a vehicle does whose mission ends in the air."""
     if mission.case.hovers:
         does = "hovers there"
-    elif mission.case.autopilot == "ardupilot":  # Plane::exit_mission_callback changes to RTL
+    elif firmware_of(mission.case.autopilot, mission.case.vehicle_type).ends_over_home:
         does = "circles over home"
     else:
         does = "circles there"

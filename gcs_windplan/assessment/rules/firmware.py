@@ -7,14 +7,15 @@ from collections.abc import Iterator
 from gcs_windplan.assessment.assessment import Finding, Severity
 from gcs_windplan.assessment.figures import Judged
 from gcs_windplan.assessment.rules.saying import Found
-from gcs_windplan.mission.lint import FINER_THAN_FLOWN, Firmware, lint, told
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.lint import FINER_THAN_FLOWN, finding_lines, lint
 
 
 def firmware(mission: Judged) -> Iterator[Found]:
-    """What it rejects is a danger, what it takes otherwise than written a warning; items alike are told once."""
+    """What it rejects is a danger, what it takes otherwise than written a warning; items alike are said once."""
     case = mission.case
-    name = Firmware(case.autopilot, case.vehicle_type).full_name
-    found = lint(case.mission, case.autopilot, case.vehicle_type)
-    for one in told([finding for finding in found if finding.rule not in FINER_THAN_FLOWN]):
+    own = firmware_of(case.autopilot, case.vehicle_type)
+    found = lint(case.mission, own)
+    for one in finding_lines([finding for finding in found if finding.rule not in FINER_THAN_FLOWN]):
         severity: Severity = "danger" if one.effect == "rejected" else "warning"
-        yield Finding(f"firmware-{one.rule}", severity, f"{one.effect} by {name}: {one.line}", one.item), None
+        yield Finding(f"firmware-{one.rule}", severity, f"{one.effect} by {own.full_name}: {one.line}", one.item), None

@@ -1,4 +1,4 @@
-"""The way through a mission: where it begins, and what it never comes to."""
+"""The way through a mission: where it begins, and what is unreachable."""
 
 from __future__ import annotations
 
@@ -8,19 +8,11 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission, MissionItem
-from gcs_windplan.mission.lint.finding import (
-    LANDINGS,
-    TAKEOFFS,
-    Findings,
-    Firmware,
-    FirmwareFinding,
-    any_of,
-    is_navigation,
-    named,
-    numbered,
-)
+from gcs_windplan.mission.firmware import Firmware
+from gcs_windplan.mission.items import MissionItem
+from gcs_windplan.mission.lint.finding import LANDINGS, TAKEOFFS, Findings, FirmwareFinding, any_of, named, numbered
 from gcs_windplan.mission.lint.jumps import is_never_taken, repeats_forever, target_of
+from gcs_windplan.mission.mission import Mission
 
 _LOOKED_AT = 16  # AP_Mission.cpp, is_takeoff_next: items looked at for a take-off
 _GROUND = frozenset((Command.NAV_DELAY, mavlink.MAV_CMD_NAV_SCRIPT_TIME, *TAKEOFFS))
@@ -30,8 +22,8 @@ _ENTRIES = frozenset((Command.DO_LAND_START, Command.JUMP_TAG, mavlink.MAV_CMD_D
 
 
 def course(mission: Mission, firmware: Firmware) -> Findings:
-    """Missions without anything to fly, without a take-off, and items that are never reached."""
-    if not any(is_navigation(item.command) for item in mission.items):
+    """Missions without anything to fly, without a take-off, and items that are unreachable."""
+    if not any(item.command in firmware.navigation for item in mission.items):
         fact = f"{firmware.name} ends a mission at once that has no item to fly"
         number = f"{len(mission.items)} items" if mission.items else "no items"
         yield FirmwareFinding("no-navigation", "ignored", None, fact, number, "add a take-off and waypoints")
@@ -41,17 +33,16 @@ def course(mission: Mission, firmware: Firmware) -> Findings:
 
 
 def _takeoff_missing(mission: Mission, firmware: Firmware) -> Findings:
-    """ArduCopter mode_auto.cpp, init: "Missing Takeoff Cmd"; PX4 mission.cpp, do_need_vertical_takeoff."""
-    flown = [item for item in mission.items if is_navigation(item.command)][:_LOOKED_AT]
+    flown = [item for item in mission.items if item.command in firmware.navigation][:_LOOKED_AT]
     first = next((item for item in flown if item.command != Command.NAV_DELAY), None)
-    if firmware.vehicle_type == "fixed-wing" or (first is not None and first.command == Command.NAV_TAKEOFF):
+    if firmware.takeoff == "optional" or (first is not None and first.command == Command.NAV_TAKEOFF):
         return
     begins = "no take-off" if first is None else f"it begins with {named(first)}"
-    if firmware.autopilot == "ardupilot":
-        fact = f"{firmware.name} on the ground takes up no mission that does not begin with NAV_TAKEOFF"
+    if firmware.takeoff == "required":
+        fact = f"{firmware.name} on the ground flies no mission that does not begin with NAV_TAKEOFF"
         yield FirmwareFinding("takeoff-missing", "rejected", None, fact, begins, "begin with NAV_TAKEOFF")
     elif not any_of(mission.items, TAKEOFFS):
-        fact = "PX4 on the ground first climbs to MIS_TAKEOFF_ALT where a mission has no take-off"
+        fact = f"{firmware.name} on the ground first climbs to MIS_TAKEOFF_ALT where a mission has no take-off"
         yield FirmwareFinding("takeoff-missing", "changed", None, fact, begins, "begin with NAV_TAKEOFF")
 
 
@@ -61,7 +52,7 @@ def _unreached(mission: Mission, firmware: Firmware) -> Findings:
     for number, item in numbered(mission):
         if number not in reached:
             end, why = way.end_before(number, reached)
-            fact = f"{firmware.name} never comes to what stands behind item {end}, {why}"
+            fact = f"on {firmware.name} items after {end} are unreachable: it is {why}"
             yield FirmwareFinding("unreachable", "ignored", number, fact, named(item), "remove it, or move it forward")
 
 
@@ -89,7 +80,7 @@ class _Way:
         if not 1 <= number <= len(self.items):
             return False
         command = self.items[number - 1].command
-        return not landed or not is_navigation(command) or command in _GROUND
+        return not landed or command not in self.firmware.navigation or command in _GROUND
 
     def _after(self, number: int, landed: bool) -> Iterator[tuple[int, bool]]:
         item = self.items[number - 1]
@@ -99,18 +90,10 @@ class _Way:
             if not repeats_forever(item, self.firmware):
                 yield number + 1, landed
         elif item.command in _ENDS:
-            if self._lands_and_goes_on:
+            if self.firmware.lands_and_goes_on:
                 yield number + 1, True
         elif item.command != Command.NAV_LOITER_UNLIM:
             yield number + 1, landed and item.command not in TAKEOFFS
-
-    @property
-    def _lands_and_goes_on(self) -> bool:
-        """Whether a mission goes on after a landing, to a second take-off (ArduCopter, verify_land and verify_RTL).
-
-        ArduPlane's verify_land is never through but for an abort, its RTL leaves AUTO; PX4 disarms.
-        """
-        return self.firmware.autopilot == "ardupilot" and self.firmware.vehicle_type != "fixed-wing"
 
     def end_before(self, number: int, reached: set[int]) -> tuple[int, str]:
         """The item at which the way to this one ends, and why."""
@@ -122,4 +105,4 @@ class _Way:
             return last, "a DO_JUMP that is always taken"
         end = next((other for other in range(last, 0, -1) if self.items[other - 1].command in _ENDS), last)
         name = named(self.items[end - 1])
-        return end, f"{name}, without a new take-off" if self._lands_and_goes_on else name
+        return end, f"{name}, without a new take-off" if self.firmware.lands_and_goes_on else name

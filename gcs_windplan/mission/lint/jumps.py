@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission, MissionItem
-from gcs_windplan.mission.lint.finding import Findings, Firmware, FirmwareFinding, numbered
-
-_TRACKED = 15  # AP_Mission.h, AP_MISSION_MAX_NUM_DO_JUMP_COMMANDS on boards with less than 500 kB of memory
-_FOREVER = -1.0  # AP_Mission.h, AP_MISSION_JUMP_REPEAT_FOREVER
+from gcs_windplan.mission.firmware import Firmware
+from gcs_windplan.mission.items import MissionItem
+from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, numbered
+from gcs_windplan.mission.mission import Mission
 
 
 def jumps(mission: Mission, firmware: Firmware) -> Findings:
@@ -18,8 +17,8 @@ def jumps(mission: Mission, firmware: Firmware) -> Findings:
     for number, item in taken:
         yield from _target(number, item, len(mission.items), firmware)
         yield from _count(number, item, firmware)
-    if firmware.autopilot == "ardupilot":
-        yield from _too_many(taken, firmware)
+    if firmware.jumps.tracked is not None:
+        yield from _too_many(taken, firmware.jumps.tracked, firmware)
 
 
 def target_of(item: MissionItem) -> int:
@@ -28,13 +27,13 @@ def target_of(item: MissionItem) -> int:
 
 
 def is_never_taken(item: MissionItem) -> bool:
-    """Whether a DO_JUMP is passed over: its count is 0 (AP_Mission.cpp, get_next_cmd; PX4 mission_base.cpp)."""
+    """Whether a DO_JUMP is ignored: its count is 0 (AP_Mission.cpp, get_next_cmd; PX4 mission_base.cpp)."""
     return math.isnan(item.params[1]) or int(item.params[1]) == 0
 
 
 def repeats_forever(item: MissionItem, firmware: Firmware) -> bool:
-    """Whether a DO_JUMP is always taken; PX4 knows no such count."""
-    return firmware.autopilot == "ardupilot" and not is_never_taken(item) and int(item.params[1]) == _FOREVER
+    """Whether a DO_JUMP is always taken."""
+    return not is_never_taken(item) and int(item.params[1]) == firmware.jumps.forever
 
 
 def _target(number: int, item: MissionItem, last: int, firmware: Firmware) -> Findings:
@@ -44,8 +43,10 @@ def _target(number: int, item: MissionItem, last: int, firmware: Firmware) -> Fi
         where = "home" if target == 0 else f"item {item.params[0]:g} of {last}"
         fact = f"{firmware.name} takes no DO_JUMP that leads to home or beyond the last item"
         yield FirmwareFinding("jump-target", "rejected", number, fact, where, f"jump to one of items 1 to {last}")
-    elif firmware.autopilot == "px4":
-        fact = "PX4 counts items from 0, and home is none: a DO_JUMP leads one item too far if sent as it is"
+    elif firmware.jumps.first == 0:
+        fact = (
+            f"{firmware.name} counts items from 0, and home is none: a DO_JUMP leads one item too far if sent as it is"
+        )
         change = f"item {target} must be sent as {target - 1}"
         yield FirmwareFinding("jump-shift", "changed", number, fact, change, "push counts right")
 
@@ -53,20 +54,25 @@ def _target(number: int, item: MissionItem, last: int, firmware: Firmware) -> Fi
 def _count(number: int, item: MissionItem, firmware: Firmware) -> Findings:
     count = item.params[1]
     if is_never_taken(item):
-        fact = f"{firmware.name} passes over a DO_JUMP with a count of 0"
+        fact = f"{firmware.name} ignores a DO_JUMP with a count of 0"
         yield FirmwareFinding("jump-never", "ignored", number, fact, "", "give parameter 2 a count")
-    elif firmware.autopilot == "px4" and count < 0:  # navigation.h: uint16_t do_jump_repeat_count
-        fact = "PX4 has no count for ever: below 0 it becomes 0 or 65535, by processor"
+    elif firmware.jumps.forever is None and count < 0:  # an uint16_t
+        fact = f"{firmware.name} has no endless count: below 0 it becomes 0 or 65535, by processor"
         yield FirmwareFinding("jump-count", "changed", number, fact, f"count {count:g}", "write a number")
-    elif firmware.autopilot == "ardupilot" and count < 0 and int(count) != _FOREVER:
-        fact = f"{firmware.name} passes over a DO_JUMP with a count below -1"
-        yield FirmwareFinding("jump-never", "ignored", number, fact, f"count {count:g}", "write -1 for: for ever")
-
-
-def _too_many(taken: list[tuple[int, MissionItem]], firmware: Firmware) -> Findings:
-    counted = [number for number, item in taken if not repeats_forever(item, firmware)]
-    for number in counted[_TRACKED:]:
-        fact = (
-            f"{firmware.name} passes over DO_JUMPs after the first {_TRACKED} on boards with less than 500 kB of memory"
+    elif count < 0 and int(count) != firmware.jumps.forever:
+        fact = f"{firmware.name} ignores a DO_JUMP with a count below {firmware.jumps.forever}"
+        yield FirmwareFinding(
+            "jump-never",
+            "ignored",
+            number,
+            fact,
+            f"count {count:g}",
+            f"write {firmware.jumps.forever} for an endless one",
         )
+
+
+def _too_many(taken: list[tuple[int, MissionItem]], tracked: int, firmware: Firmware) -> Findings:
+    counted = [number for number, item in taken if not repeats_forever(item, firmware)]
+    for number in counted[tracked:]:
+        fact = f"{firmware.name} ignores DO_JUMPs after the first {tracked} on boards with less than 500 kB of memory"
         yield FirmwareFinding("jump-too-many", "ignored", number, fact, f"{len(counted)} of them", "split the mission")

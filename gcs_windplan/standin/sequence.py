@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from gcs_windplan.mission import Command
+from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.standin.items import StoredItem
-
-_MOST_JUMPS = 255  # AP_Mission.cpp, advance_current_nav_cmd: more in a row lead nowhere
-_FOR_EVER = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,22 +19,23 @@ class Step:
 
 
 @dataclass(slots=True)
-class Course:
+class ItemSequence:
     """Counts the jumps already made, by the number of their item."""
 
+    firmware: Firmware
     jumps: dict[int, int] = field(default_factory=dict)
 
     def step(self, items: Sequence[StoredItem], start: int) -> Step:
         """The step from item `start` on; jumps on the way are made and counted."""
         before: list[int] = []
         seq, jumps = start, 0
-        while 0 <= seq < len(items) and jumps <= _MOST_JUMPS:
+        while 0 <= seq < len(items) and jumps <= self.firmware.jumps.in_a_row:
             item = items[seq]
             target = self._jump(items, seq)
             if target is not None:
                 seq, jumps = target, jumps + 1
                 continue
-            if is_flown(item):
+            if item.command in self.firmware.navigation:
                 return Step(seq, tuple(before))
             if item.command not in (Command.DO_JUMP, Command.DO_JUMP_TAG, Command.JUMP_TAG):
                 before.append(seq)
@@ -47,7 +44,7 @@ class Course:
 
     def ahead(self, items: Sequence[StoredItem], start: int) -> Iterator[Step]:
         """The steps to come from item `start` on, without making them."""
-        foreseen = Course(dict(self.jumps))
+        foreseen = ItemSequence(self.firmware, dict(self.jumps))
         step = foreseen.step(items, start)
         while step.seq is not None:
             yield step
@@ -63,15 +60,14 @@ class Course:
         else:
             return None
         made, repeats = self.jumps.get(seq, 0), int(item.params[1])
-        if target is None or not 0 <= target < len(items) or (repeats != _FOR_EVER and made >= repeats):
+        if (
+            target is None
+            or not 0 <= target < len(items)
+            or (repeats != self.firmware.jumps.forever and made >= repeats)
+        ):
             return None
         self.jumps[seq] = made + 1
         return target
-
-
-def is_flown(item: StoredItem) -> bool:
-    """Whether the item takes its time, as AP_Mission::is_nav_cmd has it; others are done on the way."""
-    return bool(item.command <= mavlink.MAV_CMD_NAV_LAST or item.command == mavlink.MAV_CMD_NAV_SET_YAW_SPEED)
 
 
 def _tagged(items: Sequence[StoredItem], tag: float) -> int | None:

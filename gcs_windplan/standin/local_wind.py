@@ -19,7 +19,7 @@ _NEAR = 5.0  # [m] and so far
 
 
 @dataclass(slots=True)
-class Air:
+class LocalWind:
     """A wind field that always has an answer: where it ends, the last known wind goes on.
 
     `trouble` says why, for a log.

@@ -1,4 +1,4 @@
-"""The stand-in's craft: body, home and surroundings, and what it has to say."""
+"""The stand-in's state: body, home and surroundings, and what it has to say."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Frame, degrees_e7, plain_frame
-from gcs_windplan.standin.air import Air
-from gcs_windplan.standin.airframe import Airframe
-from gcs_windplan.standin.items import StoredItem, single
+from gcs_windplan.mission.firmware import Firmware
+from gcs_windplan.standin.items import StoredItem
+from gcs_windplan.standin.local_wind import LocalWind
 from gcs_windplan.standin.manoeuvres import Manoeuvres
 from gcs_windplan.standin.motion import Body
 from gcs_windplan.standin.pace import Vector
 from gcs_windplan.standin.world import World
-from gcs_windplan.vehicle import Autopilot
+from gcs_windplan.vehicle import MotionProfile
 
 REACH = 500_000.0  # [m] a place farther than this from home lies outside of the flat local frame
 
@@ -46,33 +46,33 @@ class Said:
 Event: TypeAlias = Reached | Current | Said
 
 
-class Craft:
+class VehicleState:
     """Where the vehicle is, what it stands on, and the events that nobody has taken yet."""
 
-    def __init__(self, autopilot: Autopilot, airframe: Airframe, world: World) -> None:
-        self.autopilot = autopilot
+    def __init__(self, firmware: Firmware, profile: MotionProfile, world: World) -> None:
+        self.firmware = firmware
         self.armed = False
         self.landed = True
         self.events: list[Event] = []
-        self._airframe = airframe
+        self._profile = profile
         self.settle(world)
 
     def settle(self, world: World) -> None:
         """Stand on the ground of a world."""
         self.world, self.home = world, world.home
         place = world.frame.to_local(world.home.point.latitude_deg, world.home.point.longitude_deg)[0]
-        air = Air(world.wind)
-        self.body = Body(float(place[0]), float(place[1]), world.home.altitude, air, self._airframe.airspeed)
-        self.manoeuvres = Manoeuvres(self._airframe, self.body, self.ground)
+        air = LocalWind(world.wind)
+        self.body = Body(float(place[0]), float(place[1]), world.home.altitude, air, self._profile.airspeed)
+        self.manoeuvres = Manoeuvres(self._profile, self.body, self.ground, self.firmware.circle_radius)
 
     @property
-    def airframe(self) -> Airframe:
+    def profile(self) -> MotionProfile:
         """How fast it flies."""
-        return self._airframe
+        return self._profile
 
-    @airframe.setter
-    def airframe(self, airframe: Airframe) -> None:
-        self._airframe = self.manoeuvres.airframe = airframe
+    @profile.setter
+    def profile(self, profile: MotionProfile) -> None:
+        self._profile = self.manoeuvres.profile = profile
 
     @property
     def point(self) -> GeoPoint:
@@ -87,7 +87,7 @@ class Craft:
     @property
     def home_item(self) -> StoredItem:
         """Home as ArduPilot's item 0, its altitude cut to centimetres."""
-        point, altitude = self.home.point, single(int(self.home.altitude * 100) / 100)
+        point, altitude = self.home.point, self.firmware.altitude.held(self.home.altitude)
         x, y = degrees_e7(point.latitude_deg), degrees_e7(point.longitude_deg)
         return StoredItem(Frame.GLOBAL, Command.NAV_WAYPOINT, x=x, y=y, z=altitude)
 
@@ -107,19 +107,18 @@ class Craft:
         return self.home.altitude if height is None else height
 
     def target(self, item: StoredItem) -> Vector:
-        """Where an item leads: east, north, altitude AMSL [m]; here, where it names no place.
-
-        Measured on ArduCopter: a relative altitude of 0 means the present one.
-        """
+        """Where an item leads: east, north, altitude AMSL [m]; here, where it names no place."""
         east, north, altitude = self.body.place
         if item.has_place:
             east, north, _ = self.local(item.latitude_deg, item.longitude_deg, 0.0)
+        if self.firmware.means_present_altitude(item.command, item.frame, item.z):
+            return east, north, altitude
         frame = plain_frame(item.frame)
         if frame == Frame.GLOBAL:
             return east, north, item.z
         if frame == Frame.GLOBAL_TERRAIN_ALT:
             return east, north, self.ground(east, north) + item.z
-        if frame == Frame.GLOBAL_RELATIVE_ALT and not (item.z == 0 and self.autopilot == "ardupilot"):
+        if frame == Frame.GLOBAL_RELATIVE_ALT:
             return east, north, self.home.altitude + item.z
         return east, north, altitude
 

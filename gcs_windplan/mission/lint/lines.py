@@ -1,4 +1,4 @@
-"""Findings in lines for people: those alike on many items are told once."""
+"""Findings in lines for people: those alike on many items are said once."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ _SHOWN = 2  # numbers of a group
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """One line, the effect and the rule that it tells of, and the first item that it strikes."""
+class FindingLine:
+    """One line, its effect and rule, and the first item that it strikes."""
 
     effect: Effect
     line: str
@@ -20,13 +20,13 @@ class Told:
     item: int | None
 
 
-def told(findings: Sequence[FirmwareFinding]) -> tuple[Told, ...]:
+def finding_lines(findings: Sequence[FirmwareFinding]) -> tuple[FindingLine, ...]:
     """A line for each rule that strikes, worst effects first, in the order of the items."""
     groups: dict[tuple[str, Effect, str, str], list[FirmwareFinding]] = {}
     for finding in findings:
         key = finding.rule, finding.effect, finding.fact, finding.advice
         groups.setdefault(key, []).append(finding)
-    lines = [Told(group[0].effect, _line(group), group[0].rule, group[0].item) for group in groups.values()]
+    lines = [FindingLine(one[0].effect, _line(one), one[0].rule, one[0].item) for one in groups.values()]
     return tuple(sorted(lines, key=lambda line: EFFECTS.index(line.effect)))
 
 

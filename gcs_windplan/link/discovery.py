@@ -10,7 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.errors import InputError
 from gcs_windplan.link.codec import Message, Version, wire_version
 from gcs_windplan.link.outcome import Reason
-from gcs_windplan.link.peer import AUTOPILOTS, VEHICLE_TYPES, Contact, Ident, Peer, sender
+from gcs_windplan.link.peer import VEHICLE_TYPES, Contact, Ident, Peer, sender
+from gcs_windplan.mission.firmware import autopilot_of
 
 LISTENING = 1.2  # [s] heartbeats come every second: whoever else shares the link is heard by then
 _SWITCHING = 3.0  # [s] autopilots begin with MAVLink 1 and change when they hear MAVLink 2
@@ -30,7 +31,7 @@ class _Sighting:
     contact: Contact
 
 
-class Meeting:
+class Discovery:
     """Listens until the vehicle meant is there and ready, or `patience` seconds are over.
 
     `system` and `component` are those wanted, None for any. More than one vehicle that fits is an error, so
@@ -57,7 +58,7 @@ class Meeting:
         self._until = self.wake = now + self._patience
         return []
 
-    def hear(self, message: Message, now: float) -> list[Message]:
+    def handle(self, message: Message, now: float) -> list[Message]:
         """Take in a message, anybody's."""
         ident = sender(message)
         if message.get_type() == "HEARTBEAT":
@@ -65,7 +66,7 @@ class Meeting:
         sighting = self._sightings.get(ident)
         if sighting is not None:
             sighting.version = max(sighting.version, wire_version(message))
-            sighting.contact.hear(message, now)
+            sighting.contact.handle(message, now)
             self._look(now)
         return []
 
@@ -141,5 +142,4 @@ class Meeting:
 
 
 def _peer(ident: Ident, sighting: _Sighting) -> Peer:
-    autopilot = AUTOPILOTS.get(sighting.autopilot)
-    return Peer(ident, autopilot, VEHICLE_TYPES.get(sighting.kind), sighting.version)
+    return Peer(ident, autopilot_of(sighting.autopilot), VEHICLE_TYPES.get(sighting.kind), sighting.version)

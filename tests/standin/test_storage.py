@@ -6,14 +6,21 @@ import math
 
 import pytest
 
-from gcs_windplan.standin import ardupilot_store, px4_store
-from gcs_windplan.standin.items import MISSION, RALLY, Refusal, StoredItem, single
+from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.mission.firmware.floats import single
+from gcs_windplan.standin import storage
+from gcs_windplan.standin.items import MISSION, RALLY, Refusal, StoredItem
 
 from .speaking import DELAY, JUMP, LAND, LATITUDE, LOITER_TIME, LONGITUDE, RALLY_POINT, RTL, SPEED, TAKEOFF, WAYPOINT
 
 NAN, INF = math.nan, math.inf
 PARAM1, PARAM2, PARAM3, PARAM4, PARAM5, PARAM6, PARAM7 = range(6, 13)
 ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, INVALID = 1, 2, 3, 5
+COPTER, PX4 = firmware_of("ardupilot", "multicopter"), firmware_of("px4", "multicopter")
+
+
+def keep(firmware, sent, mission_type):
+    return storage.store(sent, mission_type, firmware)
 
 
 def placed(command=WAYPOINT, params=(0.0, 0.0, 0.0, 0.0), frame=3, z=50.0, x=LATITUDE, y=LONGITUDE):
@@ -46,7 +53,7 @@ def free(command, params, frame=2, x=0, y=0, z=0.0):
     ],
 )  # fmt: skip
 def test_measured_what_arducopter_keeps(sent, held):
-    kept = ardupilot_store.keep(sent, MISSION)
+    kept = keep(COPTER, sent, MISSION)
     assert isinstance(kept, StoredItem)
     assert (kept.frame, kept.command, kept.x, kept.y, kept.z) == (held.frame, held.command, held.x, held.y, held.z)
     assert kept.params == tuple(map(float, held.params))
@@ -55,7 +62,7 @@ def test_measured_what_arducopter_keeps(sent, held):
 
 
 def test_arducopter_keeps_places_to_the_last_digit_and_autocontinue_always():
-    kept = ardupilot_store.keep(StoredItem(3, WAYPOINT, x=-899_999_999, y=1_799_999_999, autocontinue=False), MISSION)
+    kept = keep(COPTER, StoredItem(3, WAYPOINT, x=-899_999_999, y=1_799_999_999, autocontinue=False), MISSION)
     assert (kept.x, kept.y, kept.autocontinue) == (-899_999_999, 1_799_999_999, True)
 
 
@@ -83,7 +90,7 @@ def test_arducopter_keeps_places_to_the_last_digit_and_autocontinue_always():
     ],
 )
 def test_measured_what_arducopter_refuses(sent, code):
-    refusal = ardupilot_store.keep(sent, MISSION)
+    refusal = keep(COPTER, sent, MISSION)
     assert isinstance(refusal, Refusal)
     assert refusal.code == code
     assert refusal.reason
@@ -91,19 +98,19 @@ def test_measured_what_arducopter_refuses(sent, code):
 
 def test_arducopter_takes_what_lies_just_inside():
     for sent in (placed(z=82_999.0), placed(x=900_000_000), placed(y=-1_800_000_000), free(SPEED, (1, 0, 0, 0), 12)):
-        assert isinstance(ardupilot_store.keep(sent, MISSION), StoredItem)
+        assert isinstance(keep(COPTER, sent, MISSION), StoredItem)
 
 
 def test_arducopter_keeps_what_it_kept():
     for sent in (placed(z=61.999, params=(3.9, 1, 1, 1)), placed(LOITER_TIME, (30.7, 1, -80, 0.5)), placed(LAND)):
-        once = ardupilot_store.keep(sent, MISSION)
-        assert ardupilot_store.keep(once, MISSION) == once
+        once = keep(COPTER, sent, MISSION)
+        assert keep(COPTER, once, MISSION) == once
 
 
 def test_arducopters_rally_points_are_above_home():
     point = placed(RALLY_POINT, frame=0)
-    assert ardupilot_store.keep(point, RALLY).code == UNSUPPORTED_FRAME
-    assert ardupilot_store.keep(placed(RALLY_POINT, z=99.9), RALLY).z == 99.0
+    assert keep(COPTER, point, RALLY).code == UNSUPPORTED_FRAME
+    assert keep(COPTER, placed(RALLY_POINT, z=99.9), RALLY).z == 99.0
 
 
 @pytest.mark.parametrize(
@@ -120,14 +127,14 @@ def test_arducopters_rally_points_are_above_home():
     ],
 )
 def test_what_px4_keeps(sent, held):
-    kept = px4_store.keep(sent, MISSION)
+    kept = keep(PX4, sent, MISSION)
     assert isinstance(kept, StoredItem)
     assert (kept.frame, kept.command, kept.x, kept.y, kept.z) == (held.frame, held.command, held.x, held.y, held.z)
     assert kept.params == pytest.approx(tuple(map(float, held.params)))
 
 
 def test_px4_takes_nan_for_no_yaw():
-    kept = px4_store.keep(placed(params=(0, 0, 0, NAN)), MISSION)
+    kept = keep(PX4, placed(params=(0, 0, 0, NAN)), MISSION)
     assert math.isnan(kept.params[3])
 
 
@@ -145,7 +152,7 @@ def test_px4_takes_nan_for_no_yaw():
     ],
 )
 def test_what_px4_refuses(sent, code):
-    refusal = px4_store.keep(sent, MISSION)
+    refusal = keep(PX4, sent, MISSION)
     assert isinstance(refusal, Refusal)
     assert refusal.code == code
 
@@ -162,5 +169,5 @@ def test_what_px4_refuses(sent, code):
     ],
 )
 def test_what_px4_takes_and_does_not_fly(items, fault):
-    found = px4_store.infeasible(items)
+    found = storage.infeasible(items, PX4)
     assert found is None if fault is None else fault in found

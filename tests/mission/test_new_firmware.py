@@ -1,0 +1,139 @@
+"""Adding a firmware is adding a file: one dropped beside the others is known to lint, comparison and stand-in."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import pytest
+
+from gcs_windplan.errors import InputError
+from gcs_windplan.flight.duration import duration_of
+from gcs_windplan.geo.frame import GeoPoint
+from gcs_windplan.link.comparison import compare_items
+from gcs_windplan.link.firmware import incoming_mission, outgoing_items
+from gcs_windplan.link.peer import Ident, Peer
+from gcs_windplan.link.wire import item_to_message, message_to_item
+from gcs_windplan.mission import Command, Home, Mission, MissionItem
+from gcs_windplan.mission.firmware import autopilot_of, firmware_of
+from gcs_windplan.mission.firmware.registry import all_firmwares
+from gcs_windplan.mission.lint import lint
+from gcs_windplan.standin.items import MISSION, Refusal, read_item
+from gcs_windplan.standin.rules import Parked
+from gcs_windplan.standin.servers import mission_server
+from gcs_windplan.standin.storage import store
+
+from ..link.standin import speaking as say
+
+FILE = '''
+"""A firmware that was not there before."""
+
+from dataclasses import replace
+
+from gcs_windplan.mission.commands import Command, Frame
+from gcs_windplan.mission.firmware.firmware import stores
+from gcs_windplan.mission.firmware.px4 import MULTICOPTER
+from gcs_windplan.mission.firmware.storage import FLOAT, NONE
+from gcs_windplan.mission.firmware.whole_numbers import U8
+
+_PLACE = stores(U8, FLOAT, NONE, NONE, FLOAT, FLOAT, FLOAT, place=True)  # hold, radius
+
+TOYFLY = replace(
+    MULTICOPTER,
+    autopilot="toyfly",
+    name="ToyFly",
+    family="ToyFly",
+    mav_autopilot=200,
+    commands={Command.NAV_TAKEOFF: _PLACE, Command.NAV_WAYPOINT: _PLACE, Command.DO_JUMP: stores(U8, U8)},
+    placeless=None,
+    capacity={"mission": 6, "fence": 0, "rally": 0},
+    navigation=frozenset((Command.NAV_TAKEOFF, Command.NAV_WAYPOINT)),
+    ignored=frozenset((Command.DO_JUMP,)),
+    not_flown=frozenset(),
+    vtol_only=frozenset(),
+    feasibility=None,
+    motion=replace(MULTICOPTER.motion, speed=2.0),
+)
+FIRMWARES = (TOYFLY, replace(TOYFLY, vehicle_type=None, variants=(TOYFLY,)))
+'''
+HOME = Home(GeoPoint(46.8, 9.8), 500.0)
+
+
+@pytest.fixture
+def toyfly(tmp_path, monkeypatch):
+    (tmp_path / "toyfly.py").write_text(FILE)
+    package = importlib.import_module("gcs_windplan.mission.firmware")
+    monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
+    all_firmwares.cache_clear()
+    yield firmware_of("toyfly", "multicopter")
+    all_firmwares.cache_clear()
+    sys.modules.pop("gcs_windplan.mission.firmware.toyfly", None)
+
+
+def at(command, north, *params):
+    return MissionItem(3, command, (*params, *[0.0] * (4 - len(params))), 46.8 + north / 111_195, 9.8, 50.0)
+
+
+def test_it_is_known_by_its_name_and_its_number(toyfly):
+    assert (toyfly.name, toyfly.full_name) == ("ToyFly", "ToyFly multicopter")
+    assert autopilot_of(200) == "toyfly"
+    assert str(Peer(Ident(1, 1), "toyfly", "multicopter")) == "ToyFly 1/1"
+    assert Mission((), HOME, "toyfly").autopilot == "toyfly"
+
+
+def test_without_the_file_nobody_knows_it():
+    with pytest.raises(InputError, match="autopilot 'toyfly' is neither 'ardupilot' nor 'px4'"):
+        firmware_of("toyfly")
+
+
+def test_lint_knows_what_it_takes_stores_and_ignores(toyfly):
+    items = (
+        at(Command.NAV_TAKEOFF, 0),
+        at(Command.NAV_WAYPOINT, 100, 2.5, 7.25, 3.0),
+        MissionItem(0, Command.DO_JUMP, (1.0, 300.0, 0.0, 0.0)),
+        at(Command.NAV_LAND, 0),
+    )
+    found = {(one.rule, one.item) for one in lint(Mission(items, HOME), toyfly)}
+    assert found == {
+        ("parameter-rounded", 2),  # the hold in whole seconds
+        ("parameter-dropped", 2),
+        ("jump-shift", 3),
+        ("command-ignored", 3),
+        ("parameter-changed", 3),  # 300 in a byte
+        ("command-unsupported", 4),
+    }
+    assert {one.rule for one in lint(Mission(items[:2] * 4, HOME), toyfly)} >= {"capacity"}
+
+
+def test_the_stand_in_stores_and_the_comparison_accepts_what_it_stores(toyfly):
+    sent = at(Command.NAV_WAYPOINT, 100, 2.5, 7.25, 3.0, 90.0)
+    stored = store(read_item(item_to_message(sent, 1, 1, 1, MISSION)), MISSION, toyfly)
+    assert stored.params == (2.0, 7.25, 0.0, 0.0)
+    assert isinstance(store(read_item(item_to_message(at(Command.NAV_LAND, 0), 1, 1, 1, 0)), MISSION, toyfly), Refusal)
+    held = message_to_item(say.said(item_to_message(sent, 1, 1, 1, MISSION)))
+    assert compare_items([sent], [held], firmware=toyfly).same
+    held = MissionItem(3, sent.command, stored.params, sent.latitude_deg, sent.longitude_deg, sent.altitude)
+    compared = compare_items([sent], [held], firmware=toyfly)
+    assert compared.same
+    assert [loss.field for loss in compared.losses] == ["parameter 1", "parameter 3", "parameter 4"]
+    wrong = MissionItem(3, sent.command, (2.0, 7.0, 0.0, 0.0), sent.latitude_deg, sent.longitude_deg, sent.altitude)
+    assert not compare_items([sent], [wrong], firmware=toyfly).same
+
+
+def test_its_mission_server_takes_a_mission_and_gives_it_back(toyfly):
+    mission = Mission((at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 100, 2.5)), HOME, "toyfly", "multicopter")
+    items = outgoing_items(mission, "mission", toyfly)
+    server = mission_server(toyfly, Parked())
+    assert say.told(server.handle(say.count(len(items)), 0.0)) == [("REQUEST_INT", 0)]
+    for seq, item in enumerate(items):
+        answers = server.handle(say.said(item_to_message(item, seq, 1, 1, MISSION)), 0.1)
+    assert say.told(answers) == [("ACK", 0)]
+    held = [item.params for item in server.items[MISSION]]
+    assert held == [(0.0, 0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0)]
+    assert incoming_mission(items, toyfly, "multicopter", HOME) == mission
+
+
+def test_missions_are_flown_at_its_pace(toyfly):
+    items = (at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 400))
+    slow = duration_of(Mission(items, HOME, "toyfly", "multicopter")).en_route
+    assert slow > 2 * duration_of(Mission(items, HOME, "px4", "multicopter")).en_route
