@@ -108,7 +108,7 @@ class FormatError(InputError):
 
 
 class AddressError(InputError):
-    """The address of a link that cannot be opened: of no known form, not this computer's, or in use."""
+    """The address of a link that cannot be opened: of an unknown format, not this computer's, or in use."""
 
 
 class RequestError(InputError):

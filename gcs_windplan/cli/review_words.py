@@ -12,12 +12,6 @@ from gcs_windplan.report import words
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment, Finding
 
-_FIRMWARES = {
-    ("ardupilot", "multicopter"): "ArduCopter",
-    ("ardupilot", "fixed-wing"): "ArduPlane",
-    ("px4", "multicopter"): "PX4 multicopter",
-    ("px4", "fixed-wing"): "PX4 fixed-wing",
-}
 _VERDICTS = {
     "clear": "nothing found",
     "warnings": "look at it before flying",
@@ -38,8 +32,10 @@ def lines(assessment: Assessment) -> Iterator[str]:
 
 
 def _head(assessment: Assessment) -> str:
+    from gcs_windplan.mission.firmware import firmware_of
+
     totals = assessment.totals
-    who = _FIRMWARES[assessment.autopilot, assessment.vehicle_type]
+    who = firmware_of(assessment.autopilot, assessment.vehicle_type).full_name
     time = f"{clock(totals.seconds)} min in all" if math.isfinite(totals.seconds) else "cannot be flown to its end"
     return (
         f"{assessment.name} ({who}): {len(assessment.legs)} legs, {totals.length / 1000:.2f} km, {time}; above ground"

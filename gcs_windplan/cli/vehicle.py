@@ -46,7 +46,10 @@ def vehicle(
         typer.Option(metavar="WIND", help="In place of the mission's: '5 m/s from 270', short 5@270; or a forecast."),
     ] = None,
     airspeed: Annotated[
-        str | None, typer.Option(metavar="SPEED", help="The most that it flies through the air; default 15 m/s.")
+        str | None,
+        typer.Option(
+            metavar="SPEED", help="The most that it flies through the air; default: what its default lean gives."
+        ),
     ] = None,
     home: Annotated[
         str | None,

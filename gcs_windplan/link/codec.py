@@ -73,7 +73,7 @@ class Codec:
         return frame
 
     def decode(self, data: bytes) -> list[Message]:
-        """The messages that are whole after these bytes; garbage, broken and unknown ones are passed over."""
+        """The messages that are whole after these bytes; garbage, broken and unknown ones are ignored."""
         messages = []
         for frame in self._frames(self._rest + data):
             message = self._message(frame)

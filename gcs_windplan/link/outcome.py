@@ -26,7 +26,7 @@ Reason: TypeAlias = Literal[
     "changed",  # what was being read changed meanwhile
     "unreadable",  # the vehicle sent an item that cannot be
     "interrupted",  # by the user
-    "time-out",  # the time given for everything is over
+    "time-out",  # it took longer than the time given for everything
 ]
 
 

@@ -163,7 +163,7 @@ class Session:
         if now >= machine.wake:
             self._send(machine.tick(now))
         if now >= self._deadline:
-            self._send(machine.cancel("time-out", f"the {self._timeout:g} s given for everything are over"))
+            self._send(machine.cancel("time-out", f"timed out after {self._timeout:g} s"))
 
     def _beat(self) -> None:
         now = self._clock()

@@ -57,7 +57,7 @@ def open_transport(address: str) -> Transport:
     if kind in _KINDS and colon:
         return _open_socket(kind, _host_and_port(address, place.removeprefix("//")), address)
     if kind in (*_KINDS, "udp", "serial", "file", "com") or "://" in address:
-        raise AddressError(f"the address {address!r} is of no known form: write {_FORMS}")
+        raise AddressError(f"unknown address format {address!r}: write {_FORMS}")
     return _open_serial(address)
 
 

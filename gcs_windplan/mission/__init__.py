@@ -1,5 +1,6 @@
 """Missions: items, commands and frames, fences and rally points, and how a planned route becomes a mission."""
 
+from gcs_windplan.flight.duration import FlownLeg, MissionDuration, WindAlong, duration_of
 from gcs_windplan.mission.commands import (
     Command,
     Frame,
@@ -23,20 +24,26 @@ from gcs_windplan.mission.fence import (
 )
 from gcs_windplan.mission.items import Home, MissionItem, degrees_e7
 from gcs_windplan.mission.mission import Mission
+from gcs_windplan.planning.route_items import RoutePoint, route_mission
 
 __all__ = [
     "Command",
     "Fence",
     "FenceCircle",
     "FencePolygon",
+    "FlownLeg",
     "Frame",
     "Home",
     "Mission",
+    "MissionDuration",
     "MissionItem",
     "RallyPoint",
     "ReturnPoint",
+    "RoutePoint",
+    "WindAlong",
     "command_name",
     "degrees_e7",
+    "duration_of",
     "fence_items",
     "fence_of",
     "frame_name",
@@ -44,6 +51,7 @@ __all__ = [
     "plain_frame",
     "rally_items",
     "rally_of",
+    "route_mission",
     "scales_place",
     "takes_place",
 ]

@@ -81,7 +81,7 @@ class Course:
     """The moves of a mission in a local frame, in the order flown; `home` is where it takes off, east, north, AMSL [m].
 
     `landings` are the items that land and the places that they name; `remarks` say what is not modelled. `endless` is
-    the item that it never comes to the end of; `aloft` where the last item leaves it in the air.
+    the item that has no end; `aloft` where the last item leaves it in the air.
     """
 
     frame: LocalFrame

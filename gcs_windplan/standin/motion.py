@@ -199,7 +199,7 @@ class Circle:
 
 @dataclass(slots=True)
 class Wait:
-    """Stay for some seconds, or for ever."""
+    """Stay for some seconds, or indefinitely."""
 
     seconds: float = math.inf
     done: bool = False

@@ -1,7 +1,4 @@
-"""What the lint says of a mission, and what the stand-in vehicle does with it: two accounts of the same rules.
-
-The lint works from the table of what is kept; the stand-in has code of its own for every command.
-"""
+"""What the lint says of a mission, and what the stand-in vehicle does with it, by one table of the firmware's facts."""
 
 from __future__ import annotations
 

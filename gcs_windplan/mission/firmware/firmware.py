@@ -211,7 +211,7 @@ class Firmware:
         """The name with the kind of vehicle, where the name does not tell it."""
         if self.vehicle_type is None or self.name != self.family:
             return self.name
-        return f"{self.name} {self.vehicle_type.replace('-', ' ')}"
+        return f"{self.name} {self.vehicle_type}"
 
     def takes(self, command: int) -> bool:
         """Whether it takes the command into a mission in any frame; what it does with it is another question."""

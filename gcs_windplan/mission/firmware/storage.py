@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 from gcs_windplan.mission.firmware.floats import same_float, single
 
@@ -29,10 +29,12 @@ _YAW: Final = 1e-3  # [deg] of a float of 32 bits in radians
 class Storage:
     """Stored as a float of 32 bits; all other ways derive from this one."""
 
+    form: ClassVar[str] = "as a float of 32 bits"
+
     @property
     def words(self) -> str:
-        """How the firmware stores it, after `stores parameter 1 of NAV_WAYPOINT`."""
-        return "as a float of 32 bits"
+        """How the firmware stores it, after `keeps parameter 1 of NAV_WAYPOINT`."""
+        return self.form.format(self)
 
     def held(self, sent: float) -> float:
         """What comes back of a number; NaN and infinity count as 0 where the field has none."""
@@ -61,10 +63,7 @@ class Storage:
 class HalfFloat(Storage):
     """A float of 16 bits (ArduPilot's Float16_t)."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "with 3 digits"
+    form: ClassVar[str] = "with 3 digits"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -86,10 +85,7 @@ class HalfFloat(Storage):
 class Yaw(Storage):
     """An angle [deg], the same modulo 360°; NaN is none (PX4's wrap_2pi)."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "modulo 360°"
+    form: ClassVar[str] = "modulo 360°"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -108,10 +104,7 @@ class Yaw(Storage):
 class Flag(Storage):
     """1 for a number above zero, else 0."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "as 1 or 0 only"
+    form: ClassVar[str] = "as 1 or 0 only"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -135,10 +128,7 @@ class LowestBit(Flag):
 class Sign(Storage):
     """-1 or 1; the size goes, and the firmware flies by its own."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "as its sign only"
+    form: ClassVar[str] = "as its sign only"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -166,10 +156,7 @@ class LandingYaw(Sign):
 class NotStored(Storage):
     """Comes back as 0."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "as 0"
+    form: ClassVar[str] = "as 0"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import ClassVar, Final
 
 from gcs_windplan.mission.firmware.floats import is_cut, same_float, single
 from gcs_windplan.mission.firmware.storage import Retention, Storage
@@ -26,10 +26,7 @@ class WholeNumber(Storage):
     lowest: int = 0
     highest: int = 0xFFFF
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return f"as a whole number from {self.lowest} to {self.highest}, cut"
+    form: ClassVar[str] = "as a whole number from {0.lowest} to {0.highest}, cut"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -56,10 +53,7 @@ class Capped(WholeNumber):
 
     most: int = _BYTE
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return f"as a whole number from 0 to {self.most}, cut"
+    form: ClassVar[str] = "as a whole number from 0 to {0.most}, cut"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -87,10 +81,7 @@ class Clamped(WholeNumber):
 class Bounded(WholeNumber):
     """A whole number, 0 in place of one outside of a range."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return f"as a whole number from {self.lowest} to {self.highest}, cut, and 0 for others"
+    form: ClassVar[str] = "as a whole number from {0.lowest} to {0.highest}, cut, and 0 for others"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -101,10 +92,7 @@ class Bounded(WholeNumber):
 class Nearest(WholeNumber):
     """A whole number, rounded (PX4's vertex counts)."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return f"as a whole number from {self.lowest} to {self.highest}"
+    form: ClassVar[str] = "as a whole number from {0.lowest} to {0.highest}"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -119,10 +107,7 @@ class Nearest(WholeNumber):
 class SignedWhole(WholeNumber):
     """A whole number whose sign is stored apart from its size (ArduPilot's loiter_ccw)."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return f"as a whole number up to {self.highest}, cut"
+    form: ClassVar[str] = "as a whole number up to {0.highest}, cut"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -133,10 +118,7 @@ class SignedWhole(WholeNumber):
 class CircleRadius(WholeNumber):
     """ArduPilot's radius of turns: a byte of metres, or of tens of them above 255 m; its sign is the way round."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "in whole metres to 255, in tens of metres to 2550"
+    form: ClassVar[str] = "in whole metres to 255, in tens of metres to 2550"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -156,10 +138,7 @@ class CircleRadius(WholeNumber):
 class Turns(WholeNumber):
     """ArduPilot's turns: whole ones up to 255, fewer than one in parts of 256."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "as whole turns from 1 to 255, cut"
+    form: ClassVar[str] = "as whole turns from 1 to 255, cut"
 
     def held(self, sent: float) -> float:
         """See `Storage`."""
@@ -176,10 +155,7 @@ class Turns(WholeNumber):
 class Hundredths(WholeNumber):
     """A whole number of hundredths, cut."""
 
-    @property
-    def words(self) -> str:
-        """See `Storage`."""
-        return "in hundredths, cut"
+    form: ClassVar[str] = "in hundredths, cut"
 
     def held(self, sent: float) -> float:
         """See `Storage`; the product is one of floats of 32 bits."""

@@ -26,20 +26,21 @@ def parameters(mission: Mission, firmware: Firmware) -> Findings:
 
 
 def _parts(item: MissionItem, firmware: Firmware) -> list[tuple[int, Storage, float]]:
-    """Number, storage and value of the parameters that are set and no place; a jump's below 0 are its own rules'."""
+    """Number, storage and value of the parameters that are set and no place, without a jump's endless count."""
     rule = firmware.rule(item.command, item.frame) or firmware.rule(item.command)
     if rule is None:
         return []
     values: tuple[float, ...] = item.params
     if not takes_place(item.command):
         values = (*item.params, item.latitude_deg, item.longitude_deg, *(() if rule.place else (item.altitude,)))
-    jumps = item.command == Command.DO_JUMP
     parts = enumerate(zip(rule.params, values, strict=False), start=1)
-    return [
-        (i, storage, sent)
-        for i, (storage, sent) in parts
-        if sent != 0 and not math.isnan(sent) and not (jumps and sent < 0)
-    ]
+    parts_set = [(i, way, sent) for i, (way, sent) in parts if sent != 0 and not math.isnan(sent)]
+    return [part for part in parts_set if not _is_endless(item, part, firmware)]
+
+
+def _is_endless(item: MissionItem, part: tuple[int, Storage, float], firmware: Firmware) -> bool:
+    """Whether a number is a jump's count below 0 where there is no such count; `jumps` looks at that."""
+    return item.command == Command.DO_JUMP and firmware.jumps.forever is None and part[0] == 2 and part[2] < 0
 
 
 def _parameter(number: int, item: MissionItem, position: int, storage: Storage, sent: float, firmware: str) -> Findings:
