@@ -9,7 +9,7 @@ from typing import Final
 from gcs_windplan.assessment.assessment import Assessment, AssessmentLimits, Source
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.judge import assess
-from gcs_windplan.mission import Mission
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.planner import Plan
@@ -24,7 +24,7 @@ def assess_plan(plan: Plan, sources: Sequence[Source] = ()) -> Assessment:
     return assess(replace(case_of(plan.request, mission_of(plan), sources), remarks=plan.notes))
 
 
-def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) -> Case:
+def case_of(request: Request, mission: MissionItems, sources: Sequence[Source] = ()) -> Case:
     """Any mission in a request's world and by its limits; the autopilot and vehicle are the request's."""
     vehicle, airframe = request.vehicle, request.airframe
     mission = replace(mission, autopilot=vehicle.autopilot, vehicle_type=vehicle.type)

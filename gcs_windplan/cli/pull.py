@@ -11,7 +11,7 @@ from gcs_windplan.cli import linking
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.transfers import Transfer
-    from gcs_windplan.mission import Mission
+    from gcs_windplan.mission import MissionItems
 
 HELP = """Pull a vehicle's mission into a .plan or .waypoints file.
 
@@ -54,7 +54,7 @@ def pull(
         _report(transfer, transfer.mission, output, as_json)
 
 
-def _report(transfer: Transfer, mission: Mission, output: Path, as_json: bool) -> None:
+def _report(transfer: Transfer, mission: MissionItems, output: Path, as_json: bool) -> None:
     peer = transfer.peer
     counts: dict[str, int] = {part.mission_type: len(part.items) for part in transfer.parts}
     counts["mission"] = len(mission.items)

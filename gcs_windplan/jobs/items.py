@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from gcs_windplan.formats import ReadMission, read_mission
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.progress import CancelToken, ProgressCallback
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from gcs_windplan.planning.request import Request
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
 if TYPE_CHECKING:
-    from gcs_windplan.mission import Mission as MissionItems
+    from gcs_windplan.mission import MissionItems
     from gcs_windplan.planning.departures import Departure
 
 #: A mission to be planned: a value, a mission file, or the planner's own request.

@@ -24,7 +24,7 @@ from gcs_windplan.jobs.requests import request_of
 from gcs_windplan.jobs.sources import software, source, sources_of_mission
 from gcs_windplan.jobs.terrains import TerrainWords
 from gcs_windplan.jobs.winds import Profile, WindWords
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.planning import planner
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.request import Request

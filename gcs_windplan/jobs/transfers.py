@@ -20,8 +20,7 @@ from gcs_windplan.link.outcome import UNSUPPORTED, Verdict
 from gcs_windplan.link.peer import Peer
 from gcs_windplan.link.session import Session, TransferCallback, open_session
 from gcs_windplan.link.verified import TransferPart, clear_items, pull_items, push_items
-from gcs_windplan.mission import Home, fence_items, rally_items
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import Home, MissionItems, fence_items, rally_items
 from gcs_windplan.mission.firmware import MissionType
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 

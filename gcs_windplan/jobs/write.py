@@ -11,7 +11,7 @@ from gcs_windplan.assessment import Assessment
 from gcs_windplan.errors import FormatError, Problem
 from gcs_windplan.formats import check_writable, format_plan, format_waypoints, write_atomically
 from gcs_windplan.jobs.items import items_of
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.planning.planner import Plan as PlannedRoute
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from gcs_windplan.mission import (
     Command,
     Frame,
     Home,
-    Mission,
     MissionItem,
+    MissionItems,
     fence_items,
     fence_of,
     rally_items,
@@ -29,7 +29,9 @@ from gcs_windplan.mission.firmware import Firmware, MissionType
 from gcs_windplan.vehicle import VehicleType
 
 
-def outgoing_items(mission: Mission, mission_type: MissionType, firmware: Firmware | None) -> tuple[MissionItem, ...]:
+def outgoing_items(
+    mission: MissionItems, mission_type: MissionType, firmware: Firmware | None
+) -> tuple[MissionItem, ...]:
     """The items of one type as they are to be sent; none where the mission has none of the type."""
     if mission_type == "fence":
         return fence_items(mission.fence)
@@ -46,14 +48,14 @@ def incoming_mission(
     firmware: Firmware | None,
     vehicle_type: VehicleType | None = None,
     home: Home | None = None,
-) -> Mission:
+) -> MissionItems:
     """The mission that a vehicle's items make; `home` is for vehicles that do not send it as item 0.
 
     Raises InputError for a DO_JUMP that aims before the first item.
     """
     at_zero = _home_of(items[0]) if items and has_home_item(firmware) else None
     moved = tuple(_jump_moved(item, 1 - _first(firmware)) for item in items[has_home_item(firmware) :])
-    return Mission(moved, at_zero or home, None if firmware is None else firmware.autopilot, vehicle_type)
+    return MissionItems(moved, at_zero or home, None if firmware is None else firmware.autopilot, vehicle_type)
 
 
 def has_home_item(firmware: Firmware | None) -> bool:
@@ -66,12 +68,12 @@ def _first(firmware: Firmware | None) -> int:
     return 0 if firmware is None else firmware.jumps.first
 
 
-def with_fence(mission: Mission, items: Sequence[MissionItem]) -> Mission:
+def with_fence(mission: MissionItems, items: Sequence[MissionItem]) -> MissionItems:
     """The mission with the fence of a vehicle's items; raises InputError for items that make none."""
     return replace(mission, fence=fence_of(items))
 
 
-def with_rally(mission: Mission, items: Sequence[MissionItem]) -> Mission:
+def with_rally(mission: MissionItems, items: Sequence[MissionItem]) -> MissionItems:
     """The mission with the rally points of a vehicle's items; raises InputError for items that are none."""
     return replace(mission, rally=rally_of(items))
 

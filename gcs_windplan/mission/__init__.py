@@ -23,7 +23,7 @@ from gcs_windplan.mission.fence import (
     rally_of,
 )
 from gcs_windplan.mission.items import Home, MissionItem, degrees_e7
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 from gcs_windplan.planning.route_items import RoutePoint, route_mission
 
 __all__ = [
@@ -34,9 +34,9 @@ __all__ = [
     "FlownLeg",
     "Frame",
     "Home",
-    "Mission",
     "MissionDuration",
     "MissionItem",
+    "MissionItems",
     "RallyPoint",
     "ReturnPoint",
     "RoutePoint",

@@ -9,12 +9,12 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.mission.commands import Command
 from gcs_windplan.mission.firmware import Firmware, Jumps, known_firmware
 from gcs_windplan.mission.items import MissionItem
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _MOST_ITEMS = 20_000  # flown in one mission, its jumps unrolled
 
 
-def stored_items(mission: Mission) -> tuple[MissionItem, ...]:
+def stored_items(mission: MissionItems) -> tuple[MissionItem, ...]:
     """The items with the numbers that the mission's firmware flies them by.
 
     A hold of -5 s becomes 65531 s on ArduPilot. As written where the mission names no autopilot.

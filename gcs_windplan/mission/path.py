@@ -20,7 +20,7 @@ from gcs_windplan.mission.commands import Command, Frame, command_name, plain_fr
 from gcs_windplan.mission.firmware import Firmware, flying_firmware
 from gcs_windplan.mission.items import Home, MissionItem
 from gcs_windplan.mission.jumps import stored_items, unrolled
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 from gcs_windplan.wind.field import Ground
 
 Place: TypeAlias = tuple[float, float, float]
@@ -93,7 +93,7 @@ class Course:
     aloft: bool = False
 
 
-def course_of(mission: Mission, frame: LocalFrame | None = None, ground: Ground | None = None) -> Course:
+def course_of(mission: MissionItems, frame: LocalFrame | None = None, ground: Ground | None = None) -> Course:
     """The moves of a mission, in `frame` or, without one, about home.
 
     Without `ground` waypoints above terrain count as above home, and a landing ends at its item's height. Raises
@@ -120,7 +120,7 @@ class _Walk:
     `landed`: it stands on the ground, `down`: after a flight, so that nothing but a take-off goes on.
     """
 
-    mission: Mission
+    mission: MissionItems
     firmware: Firmware
     home: Home
     frame: LocalFrame

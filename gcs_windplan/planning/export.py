@@ -13,7 +13,7 @@ from gcs_windplan.mission.fence import Fence, FenceCircle, FencePolygon, RallyPo
 from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.mission.firmware.storage import FLOAT
 from gcs_windplan.mission.items import Home
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 from gcs_windplan.planning.route_items import RoutePoint, route_mission
 from gcs_windplan.planning.sites import choose_layers, site_points
 
@@ -40,7 +40,7 @@ def flown_duration(plan: Plan) -> MissionDuration | None:
     return duration_of(mission_of(plan), pace=pace)
 
 
-def mission_of(plan: Plan) -> Mission:
+def mission_of(plan: Plan) -> MissionItems:
     """The mission that flies a plan: home on the ground under its first waypoint, speeds as planned.
 
     A leg straight up or down commands no speed; a fixed-wing is told airspeeds. Fence and rally points of the request

@@ -19,7 +19,7 @@ from gcs_windplan.mission.commands import Command, Frame
 from gcs_windplan.mission.firmware import Firmware, firmware_of
 from gcs_windplan.mission.firmware.storage import YAW
 from gcs_windplan.mission.items import Home, MissionItem
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def route_mission(
     speed_changes: bool,
     cruise_speed: float | None = None,
     landing_altitude: float | None = None,
-) -> Mission:
+) -> MissionItems:
     """The mission that takes off at home, flies the route and finishes by landing, returning or holding.
 
     `landing_altitude` is the ground's height AMSL [m] at the last point, needed to land there. `cruise_speed`
@@ -90,7 +90,7 @@ def route_mission(
         *_legs(writer, route, speed_changes),
         *_ending(writer, route[-1].point, finish, landing_altitude),
     )
-    return Mission(items, home, autopilot, vehicle_type, cruise_speed, cruise_speed)
+    return MissionItems(items, home, autopilot, vehicle_type, cruise_speed, cruise_speed)
 
 
 @dataclass(frozen=True, slots=True)

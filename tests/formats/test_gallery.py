@@ -15,7 +15,7 @@ import pytest
 import gcs_windplan as gw
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
 from gcs_windplan.jobs.requests import read_request
-from gcs_windplan.mission import Command, Mission, fence_items, rally_items
+from gcs_windplan.mission import Command, MissionItems, fence_items, rally_items
 from gcs_windplan.planning.planner import Plan
 from tests.oracles.fences import breaches
 
@@ -151,7 +151,7 @@ def test_the_gallery_is_whole():
         "front",
         "rounds",
     }
-    assert isinstance(gw.mission_of(planned(MISSIONS[0])), Mission)
+    assert isinstance(gw.mission_of(planned(MISSIONS[0])), MissionItems)
 
 
 def test_a_mission_of_the_gallery_has_a_fence_and_rally_points():

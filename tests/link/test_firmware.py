@@ -8,7 +8,7 @@ import pytest
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items, with_fence, with_rally
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem, fence_items, rally_items
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems, fence_items, rally_items
 from gcs_windplan.mission.firmware import known_firmware
 
 from .bench import FENCE, HOME, RALLY, survey
@@ -42,7 +42,7 @@ def test_px4_has_no_home_jumps_counted_from_0_and_frame_mission():
 
 
 def test_a_jump_to_home_is_refused_where_home_is_no_item():
-    mission = Mission((replace(JUMP, params=(0, 1, 0, 0)),), HOME)
+    mission = MissionItems((replace(JUMP, params=(0, 1, 0, 0)),), HOME)
     with pytest.raises(InputError, match="aim at an item from 1 on"):
         outgoing_items(mission, "mission", known_firmware("px4"))
 
@@ -65,7 +65,7 @@ def test_fence_and_rally_points_are_the_same_for_all():
     for autopilot in ("ardupilot", "px4", None):
         assert outgoing_items(MISSION, "fence", known_firmware(autopilot)) == fence_items(FENCE)
         assert outgoing_items(MISSION, "rally", known_firmware(autopilot)) == rally_items(RALLY)
-    bare = Mission(MISSION.items, HOME)
+    bare = MissionItems(MISSION.items, HOME)
     assert (
         outgoing_items(bare, "fence", known_firmware("px4"))
         == outgoing_items(bare, "rally", known_firmware("px4"))
@@ -77,4 +77,4 @@ def test_fence_and_rally_points_are_the_same_for_all():
 
 
 def test_an_empty_mission_sends_nothing():
-    assert outgoing_items(Mission((), HOME), "mission", known_firmware("ardupilot")) == ()
+    assert outgoing_items(MissionItems((), HOME), "mission", known_firmware("ardupilot")) == ()

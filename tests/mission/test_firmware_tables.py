@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.comparison import compare_items
 from gcs_windplan.link.wire import item_to_message, message_to_item
-from gcs_windplan.mission import Frame, Home, Mission, MissionItem, takes_place
+from gcs_windplan.mission import Frame, Home, MissionItem, MissionItems, takes_place
 from gcs_windplan.mission.firmware import all_firmwares, firmware_of
 from gcs_windplan.mission.firmware.floats import same_float
 from gcs_windplan.mission.firmware.storage import UNREAD
@@ -167,7 +167,7 @@ def test_lint_and_comparison_say_what_the_store_does(firmware, command):
         place = (46.8, 9.8, 50.25) if rule.place and takes_place(command) else (0.0, 0.0, 0.0)
         item = MissionItem(Frame.GLOBAL_RELATIVE_ALT if rule.place else own_frame, command, params, *place)
         stored = store(read_item(item_to_message(item, 1, 1, 1, MISSION)), MISSION, firmware)
-        found = lint(Mission((item,), HOME), firmware)
+        found = lint(MissionItems((item,), HOME), firmware)
         if isinstance(stored, Refusal) or math.inf in stored.params or any("jump" in one.rule for one in found):
             continue  # jumps have rules of their own
         values = (1, 1, 1, stored.frame, command, 0, 1, *stored.params, stored.x, stored.y, stored.z, MISSION)

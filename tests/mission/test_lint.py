@@ -9,7 +9,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.mission.lint import finding_lines, lint
 
@@ -40,12 +40,14 @@ SOUND = (TAKEOFF, WAYPOINT, FAR, LAND)
 
 def found(items, firmware, home=HOME):
     """The findings' rules with their items."""
-    return {(finding.rule, finding.item) for finding in lint(Mission(tuple(items), home), firmware_of(*firmware))}
+    return {(finding.rule, finding.item) for finding in lint(MissionItems(tuple(items), home), firmware_of(*firmware))}
 
 
 def one(items, firmware, rule, home=HOME):
     """The only finding of a rule."""
-    (finding,) = [found for found in lint(Mission(tuple(items), home), firmware_of(*firmware)) if found.rule == rule]
+    (finding,) = [
+        found for found in lint(MissionItems(tuple(items), home), firmware_of(*firmware)) if found.rule == rule
+    ]
     return finding
 
 
@@ -337,7 +339,9 @@ def test_without_a_vehicle_type_what_both_have_in_common():
 def test_alike_findings_are_told_in_one_line():
     hold = [at(Command.NAV_WAYPOINT, 10.0 * step, params=(0, 0, 0, 10.0 * step)) for step in range(1, 6)]
     lines = finding_lines(
-        lint(Mission((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), firmware_of(*COPTER))
+        lint(
+            MissionItems((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), firmware_of(*COPTER)
+        )
     )
     assert [(line.effect, line.line) for line in lines] == [
         (
@@ -350,7 +354,7 @@ def test_alike_findings_are_told_in_one_line():
 
 def test_worst_effects_come_first_and_the_whole_mission_before_its_items():
     items = (at(Command.NAV_WAYPOINT, up=61.999), at(Command.NAV_WAYPOINT, params=(0, NAN, 0, 0)))
-    findings = lint(Mission(items, HOME), firmware_of(*COPTER))
+    findings = lint(MissionItems(items, HOME), firmware_of(*COPTER))
     assert [(found.rule, found.item) for found in findings] == [
         ("takeoff-missing", None),
         ("altitude-rounded", 1),

@@ -14,7 +14,7 @@ from gcs_windplan.link.comparison import compare_items
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items
 from gcs_windplan.link.peer import Ident, Peer
 from gcs_windplan.link.wire import item_to_message, message_to_item
-from gcs_windplan.mission import Command, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
 from gcs_windplan.mission.firmware import autopilot_of, firmware_of
 from gcs_windplan.mission.firmware.registry import all_firmwares
 from gcs_windplan.mission.lint import lint
@@ -78,7 +78,7 @@ def test_it_is_known_by_its_name_and_its_number(toyfly):
     assert (toyfly.name, toyfly.full_name) == ("ToyFly", "ToyFly multicopter")
     assert autopilot_of(200) == "toyfly"
     assert str(Peer(Ident(1, 1), "toyfly", "multicopter")) == "ToyFly 1/1"
-    assert Mission((), HOME, "toyfly").autopilot == "toyfly"
+    assert MissionItems((), HOME, "toyfly").autopilot == "toyfly"
 
 
 def test_without_the_file_nobody_knows_it():
@@ -93,7 +93,7 @@ def test_lint_knows_what_it_takes_stores_and_ignores(toyfly):
         MissionItem(0, Command.DO_JUMP, (1.0, 300.0, 0.0, 0.0)),
         at(Command.NAV_LAND, 0),
     )
-    found = {(one.rule, one.item) for one in lint(Mission(items, HOME), toyfly)}
+    found = {(one.rule, one.item) for one in lint(MissionItems(items, HOME), toyfly)}
     assert found == {
         ("parameter-rounded", 2),  # the hold in whole seconds
         ("parameter-dropped", 2),
@@ -102,7 +102,7 @@ def test_lint_knows_what_it_takes_stores_and_ignores(toyfly):
         ("parameter-changed", 3),  # 300 in a byte
         ("command-unsupported", 4),
     }
-    assert {one.rule for one in lint(Mission(items[:2] * 4, HOME), toyfly)} >= {"capacity"}
+    assert {one.rule for one in lint(MissionItems(items[:2] * 4, HOME), toyfly)} >= {"capacity"}
 
 
 def test_the_stand_in_stores_and_the_comparison_accepts_what_it_stores(toyfly):
@@ -121,7 +121,9 @@ def test_the_stand_in_stores_and_the_comparison_accepts_what_it_stores(toyfly):
 
 
 def test_its_mission_server_takes_a_mission_and_gives_it_back(toyfly):
-    mission = Mission((at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 100, 2.5)), HOME, "toyfly", "multicopter")
+    mission = MissionItems(
+        (at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 100, 2.5)), HOME, "toyfly", "multicopter"
+    )
     items = outgoing_items(mission, "mission", toyfly)
     server = mission_server(toyfly, Parked())
     assert say.told(server.handle(say.count(len(items)), 0.0)) == [("REQUEST_INT", 0)]
@@ -135,5 +137,5 @@ def test_its_mission_server_takes_a_mission_and_gives_it_back(toyfly):
 
 def test_missions_are_flown_at_its_pace(toyfly):
     items = (at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 400))
-    slow = duration_of(Mission(items, HOME, "toyfly", "multicopter")).en_route
-    assert slow > 2 * duration_of(Mission(items, HOME, "px4", "multicopter")).en_route
+    slow = duration_of(MissionItems(items, HOME, "toyfly", "multicopter")).en_route
+    assert slow > 2 * duration_of(MissionItems(items, HOME, "px4", "multicopter")).en_route

@@ -12,7 +12,7 @@ from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import LANDINGS, TAKEOFFS, Findings, FirmwareFinding, any_of, named, numbered
 from gcs_windplan.mission.lint.jumps import is_never_taken, repeats_forever, target_of
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _LOOKED_AT = 16  # AP_Mission.cpp, is_takeoff_next: items looked at for a take-off
 _GROUND = frozenset((Command.NAV_DELAY, mavlink.MAV_CMD_NAV_SCRIPT_TIME, *TAKEOFFS))
@@ -21,7 +21,7 @@ _ENDS = LANDINGS | {Command.NAV_RETURN_TO_LAUNCH}
 _ENTRIES = frozenset((Command.DO_LAND_START, Command.JUMP_TAG, mavlink.MAV_CMD_DO_RETURN_PATH_START))
 
 
-def course(mission: Mission, firmware: Firmware) -> Findings:
+def course(mission: MissionItems, firmware: Firmware) -> Findings:
     """Missions without anything to fly, without a take-off, and items that are unreachable."""
     if not any(item.command in firmware.navigation for item in mission.items):
         fact = f"{firmware.name} ends a mission at once that has no item to fly"
@@ -32,7 +32,7 @@ def course(mission: Mission, firmware: Firmware) -> Findings:
     yield from _unreached(mission, firmware)
 
 
-def _takeoff_missing(mission: Mission, firmware: Firmware) -> Findings:
+def _takeoff_missing(mission: MissionItems, firmware: Firmware) -> Findings:
     flown = [item for item in mission.items if item.command in firmware.navigation][:_LOOKED_AT]
     first = next((item for item in flown if item.command != Command.NAV_DELAY), None)
     if firmware.takeoff == "optional" or (first is not None and first.command == Command.NAV_TAKEOFF):
@@ -46,7 +46,7 @@ def _takeoff_missing(mission: Mission, firmware: Firmware) -> Findings:
         yield FirmwareFinding("takeoff-missing", "changed", None, fact, begins, "begin with NAV_TAKEOFF")
 
 
-def _unreached(mission: Mission, firmware: Firmware) -> Findings:
+def _unreached(mission: MissionItems, firmware: Firmware) -> Findings:
     way = _Way(mission.items, firmware)
     reached = way.reached()
     for number, item in numbered(mission):

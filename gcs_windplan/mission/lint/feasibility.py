@@ -17,12 +17,12 @@ from gcs_windplan.mission.firmware import Feasibility, Firmware
 from gcs_windplan.mission.firmware.floats import float_text
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import TAKEOFFS, Findings, FirmwareFinding, named, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _EPSILON = 1.1920929e-07  # [m] FLT_EPSILON
 
 
-def feasibility(mission: Mission, firmware: Firmware) -> Findings:
+def feasibility(mission: MissionItems, firmware: Firmware) -> Findings:
     """Take-off first and above home, the first waypoint near home, nothing below home, gates apart."""
     rules = firmware.feasibility
     if rules is None:
@@ -39,7 +39,7 @@ def feasibility(mission: Mission, firmware: Firmware) -> Findings:
             )
 
 
-def above_home(item: MissionItem, mission: Mission) -> float | None:
+def above_home(item: MissionItem, mission: MissionItems) -> float | None:
     """An item's altitude above home [m], None where home is not known, or the frame another."""
     frame = plain_frame(item.frame)
     if frame == Frame.GLOBAL_RELATIVE_ALT:
@@ -55,7 +55,7 @@ def apart(one: MissionItem, other: MissionItem) -> float:
     return math.hypot(*frame.to_local(other.latitude_deg, other.longitude_deg)[0])
 
 
-def _takeoffs(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findings:
+def _takeoffs(mission: MissionItems, rules: Feasibility, firmware: Firmware) -> Findings:
     first: int | None = None
     for number, item in numbered(mission):
         if item.command in TAKEOFFS:
@@ -72,7 +72,7 @@ def _takeoffs(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findi
             first = number
 
 
-def _first_waypoint(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findings:
+def _first_waypoint(mission: MissionItems, rules: Feasibility, firmware: Firmware) -> Findings:
     placed = [
         (number, item) for number, item in numbered(mission) if item.command in rules.positions and item.has_place
     ]
@@ -92,7 +92,7 @@ def _first_waypoint(mission: Mission, rules: Feasibility, firmware: Firmware) ->
         )
 
 
-def _gates(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findings:
+def _gates(mission: MissionItems, rules: Feasibility, firmware: Firmware) -> Findings:
     gate = mavlink.MAV_CMD_CONDITION_GATE
     placed = [pair for pair in numbered(mission) if pair[1].command in rules.positions | {gate} and pair[1].has_place]
     for (_, before), (number, item) in itertools.pairwise(placed):

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 from gcs_windplan.mission.commands import Command, command_name
 from gcs_windplan.mission.items import MissionItem
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 Effect: TypeAlias = Literal["rejected", "dropped", "rounded", "changed", "ignored", "warned"]
 """Rejected: the upload is refused, or the mission is taken and not flown. Dropped, rounded, changed: a number or its
@@ -45,7 +45,7 @@ class FirmwareFinding:
 Findings: TypeAlias = Iterator[FirmwareFinding]
 
 
-def numbered(mission: Mission) -> Iterator[tuple[int, MissionItem]]:
+def numbered(mission: MissionItems) -> Iterator[tuple[int, MissionItem]]:
     """The items with their numbers."""
     return enumerate(mission.items, start=1)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _NO_VTOL = "use NAV_TAKEOFF and NAV_LAND"
 
 
-def ignored_commands(mission: Mission, firmware: Firmware) -> Findings:
+def ignored_commands(mission: MissionItems, firmware: Firmware) -> Findings:
     """Items that are ignored in flight, or for which the mission is not flown at all."""
     for number, item in numbered(mission):
         name, command = named(item), item.command

@@ -8,10 +8,10 @@ from gcs_windplan.mission.commands import Command
 from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 
-def jumps(mission: Mission, firmware: Firmware) -> Findings:
+def jumps(mission: MissionItems, firmware: Firmware) -> Findings:
     """Jumps that lead nowhere, are never or always taken, or count otherwise than the file does."""
     taken = [(number, item) for number, item in numbered(mission) if item.command == Command.DO_JUMP]
     for number, item in taken:

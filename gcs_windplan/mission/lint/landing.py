@@ -12,12 +12,12 @@ from gcs_windplan.mission.firmware import Feasibility, Firmware
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.feasibility import above_home, apart
 from gcs_windplan.mission.lint.finding import LANDINGS, Findings, FirmwareFinding, any_of, named, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _APPROACHES = (Command.NAV_WAYPOINT, Command.NAV_LOITER_TO_ALT)
 
 
-def landing(mission: Mission, firmware: Firmware) -> Findings:
+def landing(mission: MissionItems, firmware: Firmware) -> Findings:
     """Landings that are refused in flight, most of them of fixed-wings."""
     rules = firmware.feasibility
     if rules is None:
@@ -32,7 +32,7 @@ def landing(mission: Mission, firmware: Firmware) -> Findings:
                 yield from _approach(number, mission, rules, firmware)
 
 
-def _pattern(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findings:
+def _pattern(mission: MissionItems, rules: Feasibility, firmware: Firmware) -> Findings:
     starts = [number for number, item in numbered(mission) if item.command == Command.DO_LAND_START]
     landings = [number for number, item in numbered(mission) if item.command in LANDINGS]
     if rules.landing_required and mission.items and not any_of(mission.items, LANDINGS):
@@ -55,7 +55,7 @@ def _pattern(mission: Mission, rules: Feasibility, firmware: Firmware) -> Findin
             yield FirmwareFinding("land-start-before-return", "rejected", number, fact, before, "remove one of them")
 
 
-def _approach(number: int, mission: Mission, rules: Feasibility, firmware: Firmware) -> Findings:
+def _approach(number: int, mission: MissionItems, rules: Feasibility, firmware: Firmware) -> Findings:
     before, item = mission.items[number - 2], mission.items[number - 1]
     if before.command not in rules.positions:
         return

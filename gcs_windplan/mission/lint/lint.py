@@ -15,16 +15,16 @@ from gcs_windplan.mission.lint.landing import landing
 from gcs_windplan.mission.lint.parameters import parameters
 from gcs_windplan.mission.lint.places import places
 from gcs_windplan.mission.lint.upload import upload
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
-_Rules: TypeAlias = Callable[[Mission, Firmware], Findings]
+_Rules: TypeAlias = Callable[[MissionItems, Firmware], Findings]
 _AT_UPLOAD: tuple[_Rules, ...] = (upload, jumps)
 _AFTERWARDS: tuple[_Rules, ...] = (parameters, places, ignored_commands, course, feasibility, landing)
 _NUMBERS = ("dropped", "rounded", "changed")
 _MENDED = "frame-mission-needed"  # what is sent with the right frame, as `push` does, is kept
 
 
-def lint(mission: Mission, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
+def lint(mission: MissionItems, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
     """What a firmware does to a mission, in the order of its items, the whole mission first.
 
     Of a firmware for several kinds of vehicles only what all of them do. Of an item whose upload is refused nothing is
@@ -37,7 +37,7 @@ def lint(mission: Mission, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
     return tuple(one for one in found if _key(one) in common)
 
 
-def _found(mission: Mission, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
+def _found(mission: MissionItems, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
     found = [finding for rules in _AT_UPLOAD for finding in rules(mission, firmware)]
     refused = {one.item for one in found if one.effect == "rejected" and one.rule != _MENDED} - {None}
     found += [finding for rules in _AFTERWARDS for finding in rules(mission, firmware)]

@@ -11,10 +11,10 @@ from gcs_windplan.mission.firmware.storage import NONE, UNREAD
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Effect, Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.lint.meaning import meaning
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 
-def parameters(mission: Mission, firmware: Firmware) -> Findings:
+def parameters(mission: MissionItems, firmware: Firmware) -> Findings:
     """Parameters that are dropped, rounded or changed, and `autocontinue`."""
     for number, item in numbered(mission):
         for position, storage, sent in _parts(item, firmware):

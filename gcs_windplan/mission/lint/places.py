@@ -7,7 +7,7 @@ from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.mission.firmware.floats import float_text, same_float
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _CIRCLES = frozenset(
     (Command.NAV_LOITER_UNLIM, Command.NAV_LOITER_TURNS, Command.NAV_LOITER_TIME, Command.NAV_LOITER_TO_ALT)
@@ -16,7 +16,7 @@ _WAYPOINTS = frozenset((Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT))
 _FLOWN_TO = _CIRCLES | _WAYPOINTS | {Command.NAV_LAND, Command.NAV_VTOL_LAND, Command.NAV_PAYLOAD_PLACE}
 
 
-def places(mission: Mission, firmware: Firmware) -> Findings:
+def places(mission: MissionItems, firmware: Firmware) -> Findings:
     """Places that are rounded, or mean something else than they say."""
     for number, item in numbered(mission):
         yield from _cut_altitude(number, item, firmware)
@@ -81,7 +81,7 @@ def _place_zero(number: int, item: MissionItem, firmware: Firmware) -> Findings:
         yield FirmwareFinding("place-zero", "changed", number, fact, "", "write the place unless that is meant")
 
 
-def _merged(mission: Mission, firmware: Firmware) -> Findings:
+def _merged(mission: MissionItems, firmware: Firmware) -> Findings:
     """Both firmwares get 1e-7 degrees, 11 mm: that matters only where two places become one."""
     before: tuple[int, MissionItem] | None = None
     for number, item in numbered(mission):

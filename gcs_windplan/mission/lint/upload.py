@@ -11,7 +11,7 @@ from gcs_windplan.mission.firmware import CommandRule, Firmware
 from gcs_windplan.mission.firmware.floats import float_text
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
-from gcs_windplan.mission.mission import Mission
+from gcs_windplan.mission.mission_items import MissionItems
 
 _REMOVE = "remove the item"
 _INSTEAD: dict[int, str] = {
@@ -24,7 +24,7 @@ _INSTEAD: dict[int, str] = {
 _LARGEST_FLOAT = 3.4028235e38  # IEEE 754 binary32
 
 
-def upload(mission: Mission, firmware: Firmware) -> Findings:
+def upload(mission: MissionItems, firmware: Firmware) -> Findings:
     """Everything that makes the vehicle answer an upload with a no."""
     yield from _capacity(mission, firmware)
     for number, item in numbered(mission):
@@ -35,7 +35,7 @@ def upload(mission: Mission, firmware: Firmware) -> Findings:
             yield from _numbers(number, item, rule, firmware)
 
 
-def _capacity(mission: Mission, firmware: Firmware) -> Findings:
+def _capacity(mission: MissionItems, firmware: Firmware) -> Findings:
     home = firmware.transfers.home_item
     most, what = firmware.capacity["mission"] - home, "items beside home" if home else "items"
     if len(mission.items) > most:

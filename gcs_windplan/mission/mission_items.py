@@ -13,7 +13,7 @@ from gcs_windplan.vehicle import Autopilot, VehicleType
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Mission:
+class MissionItems:
     """Items in their order, what is known of home and vehicle, and the fence and rally points beside them.
 
     Home is not among `items`: it becomes row 0 of a .waypoints file and item 0 on ArduPilot when written
@@ -48,6 +48,6 @@ class Mission:
             f"<{', '.join(part for part in (f'Mission of {len(self.items)} items', home, vehicle, *beside) if part)}>"
         )
 
-    def without_fence(self) -> Mission:
+    def without_fence(self) -> MissionItems:
         """The mission without fence and rally points, for formats that have no place for them."""
         return replace(self, fence=None, rally=())
