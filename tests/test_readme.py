@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.cli.tables import mean_height, summary_lines
 from gcs_windplan.errors import MissionFileError
 from gcs_windplan.jobs.missionfile import parse_mission
@@ -21,6 +20,7 @@ from gcs_windplan.paper.flying import SHAPED, fly_case, sites_of
 from gcs_windplan.paper.graphs import lay_uniform
 from gcs_windplan.paper.published import ANGLE, DISTANCE, HYBRID
 from gcs_windplan.planning.cost import COST_NAMES, CostChoice
+from gcs_windplan.planning.planner import plan_routes
 from gcs_windplan.vehicle import best_range_airspeed, energy_per_metre, least_power_airspeed
 from tests.flight.test_duration import predicted_duration
 from tests.vehicle.test_power_rotors import ZENG
@@ -38,7 +38,7 @@ def test_the_mission_shown_is_the_mission_shipped():
 def test_the_figures_shown_are_the_programs():
     """Within what rounding on another processor may change: vertices settle a little elsewhere."""
     request = read_request(ROOT / "missions" / "jacksboro.yaml")
-    plans = gw.plan_routes(request, [CostChoice(name) for name in COST_NAMES if name != "energy"])
+    plans = plan_routes(request, [CostChoice(name) for name in COST_NAMES if name != "energy"])
     shown = re.search(r"^jacksboro, least time: (\d+) waypoints, ([\d.]+) km, (\d+):(\d\d) min", README, re.MULTILINE)
     assert shown is not None
     by_time = plans[-1]
@@ -57,7 +57,7 @@ def test_the_figures_shown_are_the_programs():
 
 def test_the_energies_shown_are_the_programs():
     request = read_request(ROOT / "missions" / "shear.yaml")
-    plans = gw.plan_routes(request, [CostChoice("distance"), CostChoice("time"), CostChoice("energy")])
+    plans = plan_routes(request, [CostChoice("distance"), CostChoice("time"), CostChoice("energy")])
     table = README.split("$ gcs-windplan compare missions/shear.yaml")[1].split("```")[0]
     for plan in plans:
         row = re.search(rf"^ {plan.choice.name} +\d+:\d\d +\S+ % +([\d.]+) ", table, re.MULTILINE)

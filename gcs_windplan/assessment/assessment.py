@@ -23,6 +23,10 @@ class Finding:
     number, the limit and what to do. Where it is: the mission's `item` (from 1 on, home being 0), the `leg` (from 1
     on), how far along the route (`distance`, level [m]) and the place; None where it concerns the whole mission.
     `value` and `limit` are in `unit`.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Finding("clearance", "danger", "leg 3 passes 12 m above ground", leg=3, value=12.0, limit=30.0, unit="m").leg
+    3
     """
 
     rule: str
@@ -219,6 +223,13 @@ class Assessment:
     """A mission, judged.
 
     `remarks` say what was repaired, ignored or assumed on the way; they do not count as findings.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> gw.review(mission).sums.clearance > 0
+    True
     """
 
     name: str

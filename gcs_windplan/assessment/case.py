@@ -7,7 +7,7 @@ from datetime import datetime
 
 from gcs_windplan.assessment.assessment import Limits, Source
 from gcs_windplan.geo.frame import LocalFrame
-from gcs_windplan.mission import Mission
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.scene import Airspace
 from gcs_windplan.terrain import Obstacles, Terrain
 from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
@@ -25,7 +25,7 @@ class Case:
     """
 
     name: str
-    mission: Mission
+    mission: MissionItems
     frame: LocalFrame
     terrain: Terrain
     wind: WindField

@@ -11,7 +11,7 @@ import numpy as np
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Home, Mission
+from gcs_windplan.mission import Home, MissionItems
 
 _FARTHEST: Final = 300_000.0  # [m] from the frame's origin, over which its distances are good to some metres
 APART: Final = 5.0  # [m] more, and home is not on this terrain's ground
@@ -59,7 +59,7 @@ def ground_at(point: GeoPoint, case: Case) -> float:
     return float(case.terrain.heights_at(np.ascontiguousarray(places))[0])
 
 
-def first_place(mission: Mission) -> GeoPoint | None:
+def first_place(mission: MissionItems) -> GeoPoint | None:
     """The first place that a mission names."""
     return next((GeoPoint(item.latitude_deg, item.longitude_deg) for item in mission.items if item.has_place), None)
 

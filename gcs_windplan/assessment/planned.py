@@ -10,21 +10,21 @@ from gcs_windplan.assessment.assessment import Assessment, Limits, Source
 from gcs_windplan.assessment.case import Case
 from gcs_windplan.assessment.judge import assess
 from gcs_windplan.flight.duration import pace_of
-from gcs_windplan.mission import Mission
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.planning.export import mission_of
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 from gcs_windplan.planning.request import Request
 from gcs_windplan.vehicle import Pace, Vehicle
 
 _FASTEST: Final = 1000.0  # [m/s] no limit
 
 
-def assess_plan(plan: Plan, sources: Sequence[Source] = ()) -> Assessment:
+def assess_plan(plan: PlannedRoute, sources: Sequence[Source] = ()) -> Assessment:
     """Judge the mission that flies a plan, by the terrain, wind, vehicle and limits of its request."""
     return assess(replace(case_of(plan.request, mission_of(plan), sources), remarks=plan.notes))
 
 
-def case_of(request: Request, mission: Mission, sources: Sequence[Source] = ()) -> Case:
+def case_of(request: Request, mission: MissionItems, sources: Sequence[Source] = ()) -> Case:
     """Any mission in a request's world and by its limits; the autopilot and vehicle are the request's."""
     vehicle, airframe = request.vehicle, request.airframe
     mission = replace(mission, autopilot=vehicle.autopilot, vehicle_type=vehicle.type)

@@ -12,13 +12,14 @@ from gcs_windplan.cli import linking
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.transfers import Transfer
-    from gcs_windplan.mission import Mission
+    from gcs_windplan.mission import MissionItems
 
 HELP = """Pull a vehicle's mission into a .plan or .waypoints file.
 
 Without --type a .plan gets mission, fence and rally points, a .waypoints the mission, which is all that it can hold.
 The file is written when everything was read, or not at all.
 """
+EPILOG = linking.EPILOG
 
 
 def pull(
@@ -55,7 +56,7 @@ def pull(
         _report(transfer, transfer.mission, output, as_json)
 
 
-def _report(transfer: Transfer, mission: Mission, output: Path, as_json: bool) -> None:
+def _report(transfer: Transfer, mission: MissionItems, output: Path, as_json: bool) -> None:
     peer = transfer.peer
     counts: dict[str, int] = {part.mission_type: len(part.items) for part in transfer.parts}
     counts["mission"] = len(mission.items)

@@ -16,7 +16,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission.items import Mission
+from gcs_windplan.mission.items import MissionItems
 from gcs_windplan.mission.path import Course, Move, Place, course_of
 from gcs_windplan.vehicle import (
     ARDUCOPTER_PACE,
@@ -81,7 +81,7 @@ class MissionDuration:
         return self.takeoff + self.en_route + self.ending
 
 
-def duration_of(mission: Mission, wind: WindAlong | None = None, pace: Pace | None = None) -> MissionDuration:
+def duration_of(mission: MissionItems, wind: WindAlong | None = None, pace: Pace | None = None) -> MissionDuration:
     """How long the mission's autopilot takes for it, from arming at home on.
 
     `pace` is by default that of the mission's autopilot with its default parameters, ArduPilot's where it names none.

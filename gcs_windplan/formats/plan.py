@@ -30,8 +30,8 @@ from gcs_windplan.mission import (
     Command,
     Frame,
     Home,
-    Mission,
     MissionItem,
+    MissionItems,
     command_name,
     is_global,
     plain_frame,
@@ -53,12 +53,12 @@ _MULTICOPTERS = frozenset(getattr(mavlink, f"MAV_TYPE_{name}") for name in _ROTO
 _ALTITUDE_MODES: dict[int, int] = {Frame.GLOBAL_RELATIVE_ALT: 1, Frame.GLOBAL: 2, Frame.GLOBAL_TERRAIN_ALT: 4}
 
 
-def write_plan(mission: Mission, path: str | os.PathLike[str]) -> None:
+def write_plan(mission: MissionItems, path: str | os.PathLike[str]) -> None:
     """Write the mission as a .plan file. Raises FormatError: no home, or the file cannot be written."""
     write_atomically(path, format_plan(mission))
 
 
-def format_plan(mission: Mission) -> str:
+def format_plan(mission: MissionItems) -> str:
     """The text of the mission's .plan file; raises FormatError for a mission without home.
 
     Coordinates are rounded to 1e-7 degrees, altitudes to millimetres; the deprecated _INT frames, which
@@ -78,7 +78,7 @@ def format_plan(mission: Mission) -> str:
     return json.dumps(document, indent=4, sort_keys=True, allow_nan=False) + "\n"
 
 
-def _mission_object(mission: Mission, home: Home) -> dict[str, Any]:
+def _mission_object(mission: MissionItems, home: Home) -> dict[str, Any]:
     place = json_place(home.point.latitude_deg, home.point.longitude_deg, home.altitude)
     speeds = {"cruiseSpeed": mission.cruise_speed, "hoverSpeed": mission.hover_speed}
     return {
@@ -92,7 +92,7 @@ def _mission_object(mission: Mission, home: Home) -> dict[str, Any]:
     }
 
 
-def _common_altitude_mode(mission: Mission) -> int:
+def _common_altitude_mode(mission: MissionItems) -> int:
     modes = {_altitude_mode(item) for item in mission.items} - {None}
     return (modes.pop() or 0) if len(modes) == 1 else 0
 
@@ -143,7 +143,7 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     cruise_speed = _speed(mission.at("cruiseSpeed"), repairs)
     hover_speed = _speed(mission.at("hoverSpeed"), repairs)
     fence, rally = read_fence(root, repairs), read_rally(root, repairs)
-    read = Mission(items, home, autopilot, vehicle_type, cruise_speed, hover_speed, fence, rally)
+    read = MissionItems(items, home, autopilot, vehicle_type, cruise_speed, hover_speed, fence, rally)
     return repairs.read(read)
 
 

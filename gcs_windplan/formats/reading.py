@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gcs_windplan.errors import FormatError, Problem
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Home, Mission
+from gcs_windplan.mission import Home, MissionItems
 
 _LINES_SHOWN = 5
 
@@ -18,9 +18,13 @@ class ReadMission:
     """A mission read from a file, and what had to be repaired or left out on the way, a sentence each.
 
     `left_out` are those of the repairs that left out parts of its fence or rally points.
+
+    >>> import gcs_windplan as gw
+    >>> gw.ReadMission(gw.MissionItems(())).repairs
+    ()
     """
 
-    mission: Mission
+    mission: MissionItems
     repairs: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
 
@@ -43,7 +47,7 @@ class Repairs:
         self.add(message)
         self._left_out.append(message)
 
-    def read(self, mission: Mission) -> ReadMission:
+    def read(self, mission: MissionItems) -> ReadMission:
         """The mission with its repairs."""
         return ReadMission(mission, self.sentences(), tuple(self._left_out))
 

@@ -25,8 +25,8 @@ from gcs_windplan.mission import (
     Command,
     Frame,
     Home,
-    Mission,
     MissionItem,
+    MissionItems,
     command_name,
     is_global,
     plain_frame,
@@ -56,18 +56,18 @@ _COMMANDS_100 = {
 }
 
 
-def write_waypoints(mission: Mission, path: str | os.PathLike[str]) -> None:
+def write_waypoints(mission: MissionItems, path: str | os.PathLike[str]) -> None:
     """Write the mission as a .waypoints file. Raises FormatError: no home, or the file cannot be written."""
     write_atomically(path, format_waypoints(mission))
 
 
-def format_waypoints(mission: Mission) -> str:
+def format_waypoints(mission: MissionItems) -> str:
     """The text of the mission's .waypoints file.
 
     Coordinates are rounded to 1e-7 degrees, altitudes to millimetres; the deprecated _INT frames become plain
     ones. Vehicle, autopilot and speeds have no place in this format. Raises FormatError for a mission without home,
     and for one with a fence or rally points: nobody shall take the file for the whole of it.
-    `Mission.without_fence()` can be written.
+    `MissionItems.without_fence()` can be written.
     """
     if mission.home is None:
         raise FormatError("a .waypoints file begins with home, and this mission has none: give it one")
@@ -122,7 +122,7 @@ def _parse(text: str, file: Path, repairs: Repairs) -> ReadMission:
     _note_numbering(rows, repairs)
     home, items = _split_home(rows, version, repairs)
     shift = 1 if version == 120 else 0
-    mission = Mission(tuple(_shifted(row.item(repairs), shift) for row in items), home)
+    mission = MissionItems(tuple(_shifted(row.item(repairs), shift) for row in items), home)
     return repairs.read(mission)
 
 

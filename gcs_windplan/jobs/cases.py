@@ -19,7 +19,7 @@ from gcs_windplan.jobs.sources import source, sources_of_terrain, sources_of_win
 from gcs_windplan.jobs.terrains import TerrainSource, as_terrain
 from gcs_windplan.jobs.winds import GivenWind, LoadedWind, Surroundings, WindSource, as_profile, as_wind
 from gcs_windplan.jobs.words import read_as
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.terrain import Extent
 from gcs_windplan.vehicle import Airframe, Autopilot, Pace, VehicleType
 from gcs_windplan.wind import Calm

@@ -9,8 +9,7 @@ from gcs_windplan.formats import ReadMission
 from gcs_windplan.jobs.items import ItemsWords, file_of, is_mission_file, items_of
 from gcs_windplan.link.comparison import Comparison, Difference, compare_either_way
 from gcs_windplan.link.wire import MissionType
-from gcs_windplan.mission import Mission as MissionItems
-from gcs_windplan.mission import MissionItem, fence_items, rally_items
+from gcs_windplan.mission import MissionItem, MissionItems, fence_items, rally_items
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 

@@ -20,7 +20,7 @@ from gcs_windplan.planning.request import Request
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
 if TYPE_CHECKING:
-    from gcs_windplan.mission import Mission as MissionItems
+    from gcs_windplan.mission import MissionItems
     from gcs_windplan.planning.departures import Departure
 
 #: A mission to be planned: a value, a mission file, or the planner's own request.
@@ -28,7 +28,7 @@ MissionWords: TypeAlias = "Mission | Request | str | os.PathLike[str]"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Plan(planner.Plan):
+class Plan(planner.PlannedRoute):
     """A route for a mission, with its flight, its totals and what a pilot must know (`notes`).
 
     `waypoints`, `legs` and `totals` are those of the flight; `battery` and `ways_home` are known where the airframe is.
@@ -228,6 +228,6 @@ def _choices(request: Request, costs: Sequence[CostChoice | CostName] | None) ->
     return [one if isinstance(one, CostChoice) else own if one == "hybrid" else CostChoice(one) for one in costs]
 
 
-def _public(found: planner.Plan) -> Plan:
+def _public(found: planner.PlannedRoute) -> Plan:
     """The planner's route with what notebooks and scripts want of it."""
     return Plan(**{field.name: getattr(found, field.name) for field in fields(found)})

@@ -11,8 +11,7 @@ from pathlib import Path
 from gcs_windplan.assessment import Assessment, Case, assess
 from gcs_windplan.assessment.planned import case_of
 from gcs_windplan.errors import InputError, Problem
-from gcs_windplan.formats import ReadMission
-from gcs_windplan.formats import read_mission as read_items
+from gcs_windplan.formats import ReadMission, read_items
 from gcs_windplan.jobs.cases import case_by_criteria
 from gcs_windplan.jobs.criteria import Criteria
 from gcs_windplan.jobs.items import ItemsWords, file_of, is_mission_file
@@ -23,8 +22,8 @@ from gcs_windplan.jobs.plans import Steps
 from gcs_windplan.jobs.requests import request_of
 from gcs_windplan.jobs.sources import software, source, sources_of_mission
 from gcs_windplan.jobs.terrains import TerrainWords
-from gcs_windplan.jobs.winds import Profile, WindWords
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.jobs.winds import WindProfile, WindWords
+from gcs_windplan.mission import MissionItems
 from gcs_windplan.planning import planner
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.request import Request
@@ -38,7 +37,7 @@ def review(
     by: Mission | str | os.PathLike[str] | None = None,
     terrain: TerrainWords | None = None,
     wind: WindWords | None = None,
-    profile: Profile | str | None = None,
+    profile: WindProfile | str | None = None,
     extend: bool = False,
     departure: datetime | str | None = None,
     vehicle: Airframe | Path | str | None = None,
@@ -117,7 +116,7 @@ def judge(
     return found
 
 
-def _read(words: ItemsWords) -> Mission | Request | planner.Plan | ReadMission:
+def _read(words: ItemsWords) -> Mission | Request | planner.PlannedRoute | ReadMission:
     """The mission to be planned, the plan, or the items that words say."""
     if isinstance(words, MissionItems):
         return ReadMission(words)
@@ -127,7 +126,7 @@ def _read(words: ItemsWords) -> Mission | Request | planner.Plan | ReadMission:
 
 
 def _case(
-    one: Mission | Request | planner.Plan | ReadMission,
+    one: Mission | Request | planner.PlannedRoute | ReadMission,
     words: ItemsWords,
     world: object,
     criteria: Criteria,
@@ -140,11 +139,13 @@ def _case(
     return _planned(one, file, criteria, step)
 
 
-def _planned(mission: Mission | Request | planner.Plan, file: Path | None, criteria: Criteria, step: Steps) -> Case:
+def _planned(
+    mission: Mission | Request | planner.PlannedRoute, file: Path | None, criteria: Criteria, step: Steps
+) -> Case:
     """The mission that planning comes to, in its own world."""
     _refuse_two_worlds(file or "a mission to be planned", criteria)
     sources = []
-    if isinstance(mission, planner.Plan):
+    if isinstance(mission, planner.PlannedRoute):
         plan = mission
     else:
         if isinstance(mission, Mission):

@@ -21,8 +21,7 @@ from gcs_windplan.link.peer import Peer
 from gcs_windplan.link.session import Session, Watch, open_session
 from gcs_windplan.link.verified import Part, clear_items, pull_items, push_items
 from gcs_windplan.link.wire import MissionType
-from gcs_windplan.mission import Home, fence_items, rally_items
-from gcs_windplan.mission import Mission as MissionItems
+from gcs_windplan.mission import Home, MissionItems, fence_items, rally_items
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
 #: What of a mission travels.

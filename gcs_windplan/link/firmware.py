@@ -18,8 +18,8 @@ from gcs_windplan.mission import (
     Command,
     Frame,
     Home,
-    Mission,
     MissionItem,
+    MissionItems,
     fence_items,
     fence_of,
     rally_items,
@@ -30,7 +30,9 @@ from gcs_windplan.mission.commands import command_name
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 
-def outgoing_items(mission: Mission, mission_type: MissionType, autopilot: Autopilot | None) -> tuple[MissionItem, ...]:
+def outgoing_items(
+    mission: MissionItems, mission_type: MissionType, autopilot: Autopilot | None
+) -> tuple[MissionItem, ...]:
     """The items of one type as they are to be sent; none where the mission has none of the type."""
     if mission_type == "fence":
         return fence_items(mission.fence)
@@ -48,23 +50,23 @@ def incoming_mission(
     autopilot: Autopilot | None,
     vehicle_type: VehicleType | None = None,
     home: Home | None = None,
-) -> Mission:
+) -> MissionItems:
     """The mission that a vehicle's items make; `home` is for vehicles that do not send it as item 0.
 
     Raises InputError for a DO_JUMP that aims before the first item.
     """
     if autopilot != "ardupilot":
-        return Mission(tuple(_jump_moved(item, 1) for item in items), home, autopilot, vehicle_type)
+        return MissionItems(tuple(_jump_moved(item, 1) for item in items), home, autopilot, vehicle_type)
     at_zero = _home_of(items[0]) if items else None
-    return Mission(tuple(items[1:]), at_zero or home, autopilot, vehicle_type)
+    return MissionItems(tuple(items[1:]), at_zero or home, autopilot, vehicle_type)
 
 
-def with_fence(mission: Mission, items: Sequence[MissionItem]) -> Mission:
+def with_fence(mission: MissionItems, items: Sequence[MissionItem]) -> MissionItems:
     """The mission with the fence of a vehicle's items; raises InputError for items that make none."""
     return replace(mission, fence=fence_of(items))
 
 
-def with_rally(mission: Mission, items: Sequence[MissionItem]) -> Mission:
+def with_rally(mission: MissionItems, items: Sequence[MissionItem]) -> MissionItems:
     """The mission with the rally points of a vehicle's items; raises InputError for items that are none."""
     return replace(mission, rally=rally_of(items))
 

@@ -21,7 +21,7 @@ from gcs_windplan.mission.fence import (
     rally_items,
     rally_of,
 )
-from gcs_windplan.mission.items import Home, Mission, MissionItem, degrees_e7
+from gcs_windplan.mission.items import Home, MissionItem, MissionItems, degrees_e7
 
 __all__ = [
     "Command",
@@ -30,8 +30,8 @@ __all__ = [
     "FencePolygon",
     "Frame",
     "Home",
-    "Mission",
     "MissionItem",
+    "MissionItems",
     "RallyPoint",
     "ReturnPoint",
     "command_name",

@@ -22,7 +22,12 @@ def degrees_e7(degrees: float) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """Where the vehicle is armed; `altitude` AMSL [m]."""
+    """Where the vehicle is armed; `altitude` AMSL [m].
+
+    >>> import gcs_windplan as gw
+    >>> gw.Home(gw.GeoPoint(46.81, 9.84), 1560.0).altitude
+    1560.0
+    """
 
     point: GeoPoint
     altitude: float
@@ -40,6 +45,10 @@ class MissionItem:
     the vehicle"). For a command without a place `latitude_deg`, `longitude_deg` and `altitude` are its
     parameters 5 to 7. DO_JUMP's first parameter counts items from 1, home being 0, as in files and on
     ArduPilot; PX4 counts one less.
+
+    >>> import gcs_windplan as gw
+    >>> gw.MissionItem(3, 16, latitude_deg=46.81, longitude_deg=9.84, altitude=60.0).has_place  # a waypoint above home
+    True
     """
 
     frame: int
@@ -106,12 +115,17 @@ class MissionItem:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Mission:
+class MissionItems:
     """Items in their order, what is known of home and vehicle, and the fence and rally points beside them.
 
     Home is not among `items`: it becomes row 0 of a .waypoints file and item 0 on ArduPilot when written
     there. `cruise_speed` (fixed-wing) and `hover_speed` (multicopter) [m/s] are what a ground station reckons
     with. Fence and rally points travel apart from the items (`fence_items`, `rally_items`).
+
+    >>> import gcs_windplan as gw
+    >>> home = gw.Home(gw.GeoPoint(46.81, 9.84), 1560.0)
+    >>> gw.MissionItems((gw.MissionItem(3, 22, altitude=60.0),), home, "ardupilot", "multicopter").rally
+    ()
     """
 
     items: tuple[MissionItem, ...]
@@ -141,6 +155,6 @@ class Mission:
             f"<{', '.join(part for part in (f'Mission of {len(self.items)} items', home, vehicle, *beside) if part)}>"
         )
 
-    def without_fence(self) -> Mission:
+    def without_fence(self) -> MissionItems:
         """The mission without fence and rally points, for formats that have no place for them."""
         return replace(self, fence=None, rally=())

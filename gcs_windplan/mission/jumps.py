@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.mission.commands import Command, Frame
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 
 _MOST_ITEMS = 20_000  # flown in one mission, its jumps unrolled
 _MOST_JUMPS = 255  # AP_Mission.cpp, advance_current_nav_cmd: more in a row lead nowhere
@@ -16,7 +16,7 @@ _AS_WRITTEN = "fhl"  # letters of `mission.kept` that change too little to matte
 _SIGN_ONLY = "s"  # of a radius that the firmware does not keep: its own counts, as for 0
 
 
-def kept_items(mission: Mission) -> tuple[MissionItem, ...]:
+def kept_items(mission: MissionItems) -> tuple[MissionItem, ...]:
     """The items with the numbers that the mission's firmware keeps of their four parameters.
 
     A hold of -5 s becomes 65531 s on ArduPilot. As written where the mission names no autopilot.
@@ -26,7 +26,7 @@ def kept_items(mission: Mission) -> tuple[MissionItem, ...]:
     return tuple(_kept(item, mission) for item in mission.items)
 
 
-def _kept(item: MissionItem, mission: Mission) -> MissionItem:
+def _kept(item: MissionItem, mission: MissionItems) -> MissionItem:
     from gcs_windplan.mission.kept import parameter_letters  # here: these bring all of MAVLink with them
     from gcs_windplan.mission.lint.parameters import held_value
 

@@ -17,7 +17,7 @@ import numpy as np
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission.commands import Command, Frame, command_name, plain_frame
-from gcs_windplan.mission.items import Home, Mission, MissionItem
+from gcs_windplan.mission.items import Home, MissionItem, MissionItems
 from gcs_windplan.mission.jumps import kept_items, unrolled
 from gcs_windplan.wind.field import Ground
 
@@ -100,7 +100,7 @@ class Course:
     aloft: bool = False
 
 
-def course_of(mission: Mission, frame: LocalFrame | None = None, ground: Ground | None = None) -> Course:
+def course_of(mission: MissionItems, frame: LocalFrame | None = None, ground: Ground | None = None) -> Course:
     """The moves of a mission, in `frame` or, without one, about home.
 
     Without `ground` waypoints above terrain count as above home, and a landing ends at its item's height. Raises
@@ -126,7 +126,7 @@ class _Walk:
     `landed`: it stands on the ground, `down`: after a flight, so that nothing but a take-off goes on.
     """
 
-    mission: Mission
+    mission: MissionItems
     home: Home
     frame: LocalFrame
     ground: Ground | None

@@ -55,7 +55,7 @@ class Effort:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Plan:
+class PlannedRoute:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
     `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
@@ -93,13 +93,13 @@ class Plan:
 
     def __repr__(self) -> str:
         return (
-            f"Plan({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
+            f"{type(self).__name__}({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
             f" {self.totals.length / 1000:.2f} km in {clock(self.totals.seconds)} min,"
             f" clearance {self.totals.clearance:.1f} m)"
         )
 
 
-def plan_route(request: Request) -> Plan:
+def plan_route(request: Request) -> PlannedRoute:
     """Plan the request's route by its own cost.
 
     Raises `RequestError` where sites and limits contradict each other (all such problems at once), `WindError` or
@@ -115,7 +115,7 @@ def plan_route(request: Request) -> Plan:
     return plan
 
 
-def refuse_unsafe(plan: Plan) -> None:
+def refuse_unsafe(plan: PlannedRoute) -> None:
     """Raise `BatteryError` for a plan that its battery does not carry through, or not home."""
     refuse_overdrawn(plan.battery)
     wanted = plan.request.limits.way_home
@@ -123,7 +123,7 @@ def refuse_unsafe(plan: Plan) -> None:
         refuse_stranded(plan.ways_home, plan.battery, plan.flight)
 
 
-def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[Plan]:
+def plan_routes(request: Request, choices: Sequence[CostChoice]) -> list[PlannedRoute]:
     """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
     ready = prepare(request)
     return [plan_ready(ready, choice) for choice in choices]
@@ -154,7 +154,7 @@ def prepare(request: Request) -> Ready:
     return Ready(bound, request, rules, sites, windy, seconds, power_of(request, windy, sites))
 
 
-def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
+def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> PlannedRoute:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
@@ -164,7 +164,7 @@ def plan_ready(ready: Ready, choice: CostChoice, begin: float = 0.0) -> Plan:
     return replace(plan, notes=(*notes, *plan.notes))
 
 
-def _quickest(ready: Ready, choice: CostChoice, begin: float) -> Plan:
+def _quickest(ready: Ready, choice: CostChoice, begin: float) -> PlannedRoute:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
     if choice.name != "time" or not ready.request.free_airspeed or ready.request.airframe is None:
         return _planned(ready, choice, begin)
@@ -186,7 +186,7 @@ def _planned(
     begin: float,
     worth: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
-) -> Plan:
+) -> PlannedRoute:
     """The plan for one worth of time.
 
     Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the
@@ -218,7 +218,7 @@ def _planned(
     if ready.flown is not ready.asked:
         strongest = strongest_along(ready.asked, found.points, begin, found.airspeeds)
         strongest.refuse_over(request.limits, request.robust)
-    return Plan(
+    return PlannedRoute(
         ready.asked, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest
     )
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Command, Frame
-from gcs_windplan.mission.items import Home, Mission, MissionItem
+from gcs_windplan.mission.items import Home, MissionItem, MissionItems
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def route_mission(
     speed_changes: bool,
     cruise_speed: float | None = None,
     landing_altitude: float | None = None,
-) -> Mission:
+) -> MissionItems:
     """The mission that takes off at home, flies the route and finishes by landing, returning or holding.
 
     `landing_altitude` is the ground's height AMSL [m] at the last point, needed to land there. `cruise_speed`
@@ -87,7 +87,7 @@ def route_mission(
         *_legs(writer, route, speed_changes),
         *_ending(writer, route[-1].point, finish, landing_altitude),
     )
-    return Mission(items, home, autopilot, vehicle_type, cruise_speed, cruise_speed)
+    return MissionItems(items, home, autopilot, vehicle_type, cruise_speed, cruise_speed)
 
 
 @dataclass(frozen=True, slots=True)

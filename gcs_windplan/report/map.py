@@ -10,7 +10,7 @@ from matplotlib.collections import PolyCollection
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.flight import clock
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 from gcs_windplan.planning.sites import choose_area
 from gcs_windplan.png import png_bytes
 from gcs_windplan.report import sheet
@@ -20,7 +20,7 @@ from gcs_windplan.terrain import Extent
 _PIXELS = 500  # of relief along the longer side
 
 
-def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
+def draw_map(plans: Sequence[PlannedRoute], dpi: int = 120) -> bytes:
     """One or several routes of one request on a map, as PNG.
 
     A single route is coloured by its ground speed; several are told apart by colour and dash.
@@ -45,19 +45,19 @@ def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
     return png_bytes(figure, dpi)
 
 
-def _line(plan: Plan) -> FloatArray:
+def _line(plan: PlannedRoute) -> FloatArray:
     """The route in plan, (n, 2) [m]."""
     return np.array([(w.east, w.north) for w in plan.waypoints])
 
 
-def _ground(plan: Plan, extent: Extent) -> Ground:
+def _ground(plan: PlannedRoute, extent: Extent) -> Ground:
     """The terrain in an extent."""
     x, y = sheet.grid(extent, _PIXELS)
     heights = plan.request.terrain.heights_at(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
     return Ground(extent.west, extent.south, extent.east, extent.north, heights)
 
 
-def _draw_areas(axes: Any, plan: Plan) -> None:
+def _draw_areas(axes: Any, plan: PlannedRoute) -> None:
     """Keep-out areas hatched, keep-in areas outlined, obstacles filled."""
     for prism in plan.request.airspace.keep_out:
         sheet.draw_keep_out(axes, prism.corners, prism.name, prism.floor, prism.ceiling)
@@ -68,7 +68,7 @@ def _draw_areas(axes: Any, plan: Plan) -> None:
         sheet.draw_keep_in(axes, prism.corners)
 
 
-def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
+def _draw_wind(axes: Any, plan: PlannedRoute, extent: Extent) -> None:
     """Arrows towards where the wind blows, at the route's mean height above ground."""
     sites = np.array([(site.east, site.north) for site in plan.request.sites])
     planned = choose_area(plan.request, sites)  # the wind need not be known beyond it
@@ -94,7 +94,7 @@ def _draw_wind(axes: Any, plan: Plan, extent: Extent) -> None:
     sheet.draw_wind(axes, extent, points, wind, where)
 
 
-def _draw_sites(axes: Any, plan: Plan) -> None:
+def _draw_sites(axes: Any, plan: PlannedRoute) -> None:
     """Start, vias and goal, named."""
     for site in plan.request.sites:
         x, y = site.east / 1000, site.north / 1000
@@ -103,7 +103,7 @@ def _draw_sites(axes: Any, plan: Plan) -> None:
         sheet.label(axes, x, y, site.field.replace("via.", "via "), size=10, offset=(8, -12))
 
 
-def _title(plans: Sequence[Plan]) -> str:
+def _title(plans: Sequence[PlannedRoute]) -> str:
     plan = plans[0]
     what = f"least {plan.choice}, {plan.totals.length / 1000:.2f} km in {clock(plan.totals.seconds)} min"
     head = what if len(plans) == 1 else "routes of least " + ", ".join(p.choice.name for p in plans)

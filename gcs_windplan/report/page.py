@@ -117,7 +117,7 @@ def _policy(style: str, script: str, library: Library | None) -> Markup:
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("gcs_windplan", "review"),
+        loader=PackageLoader("gcs_windplan", "report"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

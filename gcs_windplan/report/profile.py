@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 from gcs_windplan.png import png_bytes
 from gcs_windplan.report.side import Side, draw_heights, dress_speeds, side_figure
 
 _SAMPLES = 1200
 
 
-def draw_profile(plan: Plan, dpi: int = 120) -> bytes:
+def draw_profile(plan: PlannedRoute, dpi: int = 120) -> bytes:
     """Ground, clearance, height limit and route over the distance flown; below it ground speed and wind, as PNG."""
     totals = plan.totals
     figure, heights, speeds = side_figure(
@@ -26,7 +26,7 @@ def draw_profile(plan: Plan, dpi: int = 120) -> bytes:
     return png_bytes(figure, dpi)
 
 
-def _side(plan: Plan, flown: FloatArray) -> Side:
+def _side(plan: PlannedRoute, flown: FloatArray) -> Side:
     """The ground under the route and its corners."""
     request = plan.request
     along = np.unique(np.concatenate([np.linspace(0, flown[-1], _SAMPLES), flown]))
@@ -38,7 +38,7 @@ def _side(plan: Plan, flown: FloatArray) -> Side:
     )
 
 
-def _draw_speeds(axes: Any, plan: Plan, flown: FloatArray) -> None:
+def _draw_speeds(axes: Any, plan: PlannedRoute, flown: FloatArray) -> None:
     """Each leg's ground speed against the airspeed, and its wind along the track."""
     ground = [leg.ground_speed for leg in plan.legs]
     along = [leg.wind_along for leg in plan.legs]

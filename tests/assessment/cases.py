@@ -10,7 +10,7 @@ import numpy as np
 
 from gcs_windplan.assessment import Assessment, Case, Finding, Limits, assess
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import ARDUCOPTER_PACE, Airframe, Battery, PowerTable, Vehicle
 from gcs_windplan.wind import Calm
@@ -71,7 +71,7 @@ HOME = Home(FRAME.origin, GROUND)
 def case(*items: MissionItem, mission: dict[str, Any] | None = None, **more: Any) -> Case:
     """A case of a mission from the origin, over the plain in still air; a take-off comes first."""
     given = {"home": HOME, "autopilot": "ardupilot", "vehicle_type": "multicopter", **(mission or {})}
-    flown = Mission((takeoff(), *items), **given)
+    flown = MissionItems((takeoff(), *items), **given)
     known = {
         "name": "test",
         "frame": FRAME,

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from gcs_windplan.assessment import Assessment, Case, assess
 from gcs_windplan.flight.duration import duration_of
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.mission import Command, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
 from gcs_windplan.terrain import flat
 from gcs_windplan.vehicle import PX4_PACE, air_density, return_seconds
 from gcs_windplan.wind import Calm, ConstantWind
@@ -225,7 +225,7 @@ def test_a_mission_over_the_date_line():
     items += [
         MissionItem(3, 16, (0, 0, 0, 0), float(a), float(b), 80.0) for a, b in zip(latitudes, longitudes, strict=True)
     ]
-    mission = Mission(tuple(items), Home(frame.origin, 0.0), "ardupilot", "multicopter")
+    mission = MissionItems(tuple(items), Home(frame.origin, 0.0), "ardupilot", "multicopter")
     review = assess(
         Case("line", mission, frame, flat(9000.0), Calm(), "ardupilot", "multicopter", SWIFT, 10.0, home_is_given=True)
     )

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from gcs_windplan.cli.app import app
-from gcs_windplan.formats import read_mission, write_plan, write_waypoints
+from gcs_windplan.formats import read_items, write_plan, write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
 
 CORPUS = Path(__file__).parents[3] / "shared" / "data" / "missions"
 FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file()) if CORPUS.is_dir() else []
@@ -20,7 +20,7 @@ HOME = Home(GeoPoint(46.8, 9.8), 500.0)
 TAKEOFF = MissionItem(3, Command.NAV_TAKEOFF, (0.0, 0.0, 0.0, 0.0), 46.8, 9.8, 50.0)
 WAYPOINT = MissionItem(3, Command.NAV_WAYPOINT, (0.0, 0.0, 0.0, 0.0), 46.801, 9.8, 50.0)
 LAND = MissionItem(3, Command.NAV_LAND, (0.0, 0.0, 0.0, 0.0), 46.802, 9.8, 0.0)
-SOUND = Mission((TAKEOFF, WAYPOINT, LAND), HOME, "ardupilot", "multicopter")
+SOUND = MissionItems((TAKEOFF, WAYPOINT, LAND), HOME, "ardupilot", "multicopter")
 SPLINE = replace(WAYPOINT, command=int(Command.NAV_SPLINE_WAYPOINT))
 TURNED = replace(WAYPOINT, params=(0.0, 0.0, 7.0, 90.0))
 
@@ -42,7 +42,7 @@ def check(*arguments: object) -> Result:
     return CliRunner().invoke(app, ["check", *map(str, arguments)], catch_exceptions=True)
 
 
-def written(path: Path, mission: Mission) -> Path:
+def written(path: Path, mission: MissionItems) -> Path:
     (write_plan if path.suffix == ".plan" else write_waypoints)(mission, path)
     return path
 
@@ -57,7 +57,7 @@ def test_nothing_found(tmp_path: Path):
 
 
 def test_findings_are_told_worst_first_and_counted(tmp_path: Path):
-    mission = Mission((TAKEOFF, TURNED, SPLINE, TURNED, LAND), HOME)
+    mission = MissionItems((TAKEOFF, TURNED, SPLINE, TURNED, LAND), HOME)
     file = written(tmp_path / "mission.waypoints", mission)
     done = check(file, "--autopilot", "px4", "--vehicle-type", "multicopter")
     assert done.exit_code == 1
@@ -139,7 +139,7 @@ def test_every_file_of_the_corpus_ends_in_a_verdict(path: Path):
         done = check(path, "--autopilot", "ardupilot", *options)
         if isinstance(done.exception, FormatError):
             with pytest.raises(FormatError):
-                read_mission(path)
+                read_items(path)
         else:
             assert done.exit_code in (0, 1)
             assert f"{path.name} for Ardu" in done.stdout

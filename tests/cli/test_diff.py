@@ -13,11 +13,11 @@ from typer.testing import CliRunner, Result
 
 from gcs_windplan.cli.app import app
 from gcs_windplan.formats import write_plan
-from gcs_windplan.mission import Command, Mission, MissionItem
+from gcs_windplan.mission import Command, MissionItem, MissionItems
 from tests.link.bench import survey
 
 
-def written(path: Path, mission: Mission) -> Path:
+def written(path: Path, mission: MissionItems) -> Path:
     write_plan(mission, path)
     return path
 
@@ -31,17 +31,17 @@ def both_ways(one: Path, other: Path, *options: object) -> tuple[Result, Result]
 
 
 @pytest.fixture
-def planned() -> Mission:
+def planned() -> MissionItems:
     return replace(survey(), autopilot="ardupilot", vehicle_type="multicopter")
 
 
-def cut(mission: Mission) -> Mission:
+def cut(mission: MissionItems) -> MissionItems:
     """The mission with its altitudes as ArduPilot keeps them."""
     items = [replace(item, altitude=math.trunc(item.altitude * 100) / 100) for item in mission.items]
     return replace(mission, items=tuple(items))
 
 
-def test_two_autopilots_make_every_number_count(planned: Mission, tmp_path: Path):
+def test_two_autopilots_make_every_number_count(planned: MissionItems, tmp_path: Path):
     one = written(tmp_path / "one.plan", planned)
     other = written(tmp_path / "other.plan", replace(cut(planned), autopilot="px4"))
     for done in both_ways(one, other):
@@ -56,7 +56,7 @@ def test_two_autopilots_make_every_number_count(planned: Mission, tmp_path: Path
 
 
 @pytest.mark.parametrize("named", ["ardupilot", "px4"])
-def test_one_file_that_names_an_autopilot_counts_from_either_side(named, planned: Mission, tmp_path: Path):
+def test_one_file_that_names_an_autopilot_counts_from_either_side(named, planned: MissionItems, tmp_path: Path):
     one = written(tmp_path / "one.plan", replace(planned, autopilot=named))
     other = written(tmp_path / "other.plan", replace(cut(planned), autopilot=None))
     assert [done.exit_code for done in both_ways(one, other)] == [int(named == "px4")] * 2
@@ -65,7 +65,7 @@ def test_one_file_that_names_an_autopilot_counts_from_either_side(named, planned
 @pytest.mark.parametrize(("number", "lost_on"), [(0, "fixed-wing"), (1, "multicopter")])
 @pytest.mark.parametrize("others", ["multicopter", "fixed-wing", None])
 @pytest.mark.parametrize("kind", ["multicopter", "fixed-wing"])
-def test_kinds_of_vehicles_count_from_either_side(kind, others, number, lost_on, planned: Mission, tmp_path: Path):
+def test_kinds_of_vehicles_count_from_either_side(kind, others, number, lost_on, planned: MissionItems, tmp_path: Path):
     params = [5.0 if at == number else 0.0 for at in range(4)]
     items = (MissionItem(3, Command.NAV_WAYPOINT, tuple(params), 46.8, 9.8, 50.0),)
     one = written(tmp_path / "one.plan", replace(planned, items=items, vehicle_type=kind))
@@ -75,7 +75,7 @@ def test_kinds_of_vehicles_count_from_either_side(kind, others, number, lost_on,
     assert [done.exit_code for done in both_ways(one, other)] == [int(not same)] * 2
 
 
-def test_losses_are_said(planned: Mission, tmp_path: Path):
+def test_losses_are_said(planned: MissionItems, tmp_path: Path):
     items = tuple(replace(item, params=(item.params[0], 5.0, 0.0, 0.0)) for item in planned.items)
     one = written(tmp_path / "one.plan", replace(planned, items=items))
     bare = tuple(replace(item, params=(item.params[0], 0.0, 0.0, 0.0)) for item in planned.items)
@@ -88,7 +88,7 @@ def test_losses_are_said(planned: Mission, tmp_path: Path):
     assert any(line.startswith("mission: not kept by ArduPilot: parameter 2 5 became 0 (items 1") for line in lines)
 
 
-def test_a_part_of_a_fifth_parameter_is_a_difference(planned: Mission, tmp_path: Path):
+def test_a_part_of_a_fifth_parameter_is_a_difference(planned: MissionItems, tmp_path: Path):
     actuator = MissionItem(2, mavlink.MAV_CMD_DO_SET_ACTUATOR, (0.0, 0.0, 0.0, 0.0), 0.6)
     one = written(tmp_path / "one.plan", replace(planned, items=(actuator,)))
     other = written(tmp_path / "other.plan", replace(planned, items=(replace(actuator, latitude_deg=1.0),)))

@@ -19,7 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.formats import read_plan, write_plan, write_waypoints
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.link.session import OWN
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems
 from tests.link.autopilots import PX4, ArduPilot, Autopilot
 from tests.link.bench import survey
 from tests.link.udp import calling
@@ -362,7 +362,7 @@ def test_files_that_are_no_missions(tmp_path: Path):
         assert done.returncode == 2, name
         assert done.stderr.startswith("error: ")
         assert "Traceback" not in done.stderr
-    write_plan(Mission((), survey().home), tmp_path / "empty.plan")
+    write_plan(MissionItems((), survey().home), tmp_path / "empty.plan")
     done = run("push", "empty.plan", "--to", udpin(free_port()), cwd=tmp_path)
     assert (done.returncode, "verb clear" in done.stderr) == (2, True)
 

@@ -14,11 +14,11 @@ from typer.testing import CliRunner, Result
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import FormatError, InputError, TerrainError, WindError
 from gcs_windplan.formats import write_plan, write_waypoints
-from gcs_windplan.mission import Fence, FencePolygon, Mission
+from gcs_windplan.mission import Fence, FencePolygon, MissionItems
 from tests.assessment.cases import HOME, RETURN, at, point, takeoff
 
 ITEMS = (takeoff(60), at(0, 300, 60), at(300, 300, 60), RETURN)
-MISSION = Mission(ITEMS, HOME, "ardupilot", "multicopter")
+MISSION = MissionItems(ITEMS, HOME, "ardupilot", "multicopter")
 WORLD = """name: {name}
 vehicle: {{airspeed: 12 m/s}}
 terrain: {{surface: {{size: 4 km, cell: 50 m}}, origin: {{latitude: 46.8, longitude: 9.8, altitude: 500}}}}
@@ -135,7 +135,7 @@ def test_units_and_home(drawn: Path, tmp_path: Path):
 def test_a_fence_of_the_file_is_held_against_it(tmp_path: Path):
     square = FencePolygon(tuple(point(e, n) for e, n in [(-50, -50), (200, -50), (200, 400), (-50, 400)]))
     file = tmp_path / "fenced.plan"
-    write_plan(Mission(ITEMS, HOME, "ardupilot", "multicopter", fence=Fence((square,))), file)
+    write_plan(MissionItems(ITEMS, HOME, "ardupilot", "multicopter", fence=Fence((square,))), file)
     done = review(file, "--terrain", "flat:500", "-o", tmp_path / "p.html")
     assert "DANGER: leg 2 (to item 3) leaves the mission's own fence polygon 1" in done.stdout
 
@@ -220,7 +220,7 @@ def test_a_battery_that_is_overdrawn_is_a_finding_not_an_error(tmp_path: Path, g
 
 
 def test_a_mission_with_a_far_waypoint_says_which(tmp_path: Path):
-    write_plan(Mission((*ITEMS[:3], at(290_000, 0), at(-290_000, 0), RETURN), HOME), tmp_path / "far.plan")
+    write_plan(MissionItems((*ITEMS[:3], at(290_000, 0), at(-290_000, 0), RETURN), HOME), tmp_path / "far.plan")
     done = review(tmp_path / "far.plan", "--terrain", "flat:500")
     assert done.exception is None or "item" in str(done.exception)
 

@@ -13,11 +13,11 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.formats import write_plan
 from gcs_windplan.jobs.cases import case_by_criteria
 from gcs_windplan.jobs.criteria import Criteria
-from gcs_windplan.mission import Mission
+from gcs_windplan.mission import MissionItems
 from tests.assessment.cases import HOME, RETURN, at, takeoff
 from tests.cli.test_review import WORLD
 
-MISSION = Mission((takeoff(60), at(0, 300, 60), RETURN), HOME, "ardupilot", "multicopter")
+MISSION = MissionItems((takeoff(60), at(0, 300, 60), RETURN), HOME, "ardupilot", "multicopter")
 
 
 def review(*arguments: object) -> Result:
@@ -73,7 +73,7 @@ def test_a_mission_elsewhere_is_told_with_its_file(drawn: Path, gallery: Path, t
 
 def test_a_fixed_wing_climbs_as_its_airframe(gallery: Path):
     def pace(kind, airframe):
-        flown = Mission(MISSION.items, HOME, "ardupilot", kind)
+        flown = MissionItems(MISSION.items, HOME, "ardupilot", kind)
         criteria = Criteria(terrain="flat:500", vehicle=gallery / "vehicles" / airframe)
         return case_by_criteria(flown, "test", Path("test.plan"), criteria).pace
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from gcs_windplan.errors import InputError
 from gcs_windplan.flight.duration import duration_of
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.vehicle import ARDUCOPTER_PACE, PX4_PACE, Pace, as_flown, landing_seconds, takeoff_seconds
 
 HOME = Home(GeoPoint(36.5, -84.3), 300.0)
@@ -53,8 +53,8 @@ def speed(value: float, kind: float = 1.0) -> MissionItem:
     return free(Command.DO_CHANGE_SPEED, kind, value, -1.0)
 
 
-def mission(*items: MissionItem, **more: Any) -> Mission:
-    return Mission((takeoff(), *items), HOME, **{"autopilot": "ardupilot", **more})
+def mission(*items: MissionItem, **more: Any) -> MissionItems:
+    return MissionItems((takeoff(), *items), HOME, **{"autopilot": "ardupilot", **more})
 
 
 def leg_seconds(*items: MissionItem, pace: Pace = SWIFT) -> list[float]:
@@ -212,7 +212,7 @@ def test_what_is_not_modelled_is_named():
 
 
 def test_without_a_takeoff_one_is_counted():
-    flown = duration_of(Mission((at(0, 500, 60), at(0, 900, 60)), HOME, "px4"))
+    flown = duration_of(MissionItems((at(0, 500, 60), at(0, 900, 60)), HOME, "px4"))
     assert flown.takeoff == pytest.approx(takeoff_seconds(60, PX4_PACE))
     assert flown.remarks == ("there is no take-off before item 1; one straight up is counted",)
     assert len(flown.legs) == 2
@@ -221,7 +221,7 @@ def test_without_a_takeoff_one_is_counted():
 def test_px4_flies_to_the_place_of_its_takeoff():
     lift = at(30, 40, 20, command=Command.NAV_TAKEOFF)
     ends = {
-        autopilot: [leg.end for leg in duration_of(Mission((lift, at(0, 100, 20)), HOME, autopilot)).legs]
+        autopilot: [leg.end for leg in duration_of(MissionItems((lift, at(0, 100, 20)), HOME, autopilot)).legs]
         for autopilot in ("px4", "ardupilot")
     }
     assert ends["px4"][0] == pytest.approx((30, 40, 320), abs=one_centimetre)
@@ -230,7 +230,7 @@ def test_px4_flies_to_the_place_of_its_takeoff():
 
 def test_each_autopilot_has_its_own_pace():
     items = (takeoff(), at(0, 1000), at(0, 2000), at(0, 3000))
-    px4, ardupilot = (duration_of(Mission(items, HOME, name)).legs[1].seconds for name in ("px4", "ardupilot"))
+    px4, ardupilot = (duration_of(MissionItems(items, HOME, name)).legs[1].seconds for name in ("px4", "ardupilot"))
     assert (px4, ardupilot) == (pytest.approx(200, abs=a_hundredth), pytest.approx(100, abs=a_hundredth))
 
 
@@ -267,7 +267,7 @@ def test_a_wind_that_is_too_strong_takes_for_ever():
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (Mission((takeoff(),)), "names no home"),
+        (MissionItems((takeoff(),)), "names no home"),
         (mission(*ROW, vehicle_type="fixed-wing"), "a fixed-wing"),
         (mission(at(0, 50), free(Command.DO_JUMP, 2, 30000)), "more than 20000 items"),
     ],
@@ -284,7 +284,7 @@ def test_jumps_that_go_round_end():
 
 @pytest.mark.parametrize("items", [(), (takeoff(),), (HOME_AGAIN,), (free(Command.NAV_DELAY, 3),)])
 def test_a_mission_of_nearly_nothing(items):
-    assert duration_of(Mission(items, HOME)).total >= 0
+    assert duration_of(MissionItems(items, HOME)).total >= 0
 
 
 # What must hold for any mission
@@ -338,7 +338,7 @@ def test_holds_count_as_the_firmware_keeps_them():
 
     def waits(autopilot, seconds, command):
         hold = at(0, 500, 80, seconds, command=command)
-        return [leg.hold for leg in duration_of(Mission((takeoff(), hold), HOME, autopilot)).legs]
+        return [leg.hold for leg in duration_of(MissionItems((takeoff(), hold), HOME, autopilot)).legs]
 
     loiter, waypoint = Command.NAV_LOITER_TIME, Command.NAV_WAYPOINT
     assert waits("ardupilot", -5, loiter) == [65531]
@@ -351,7 +351,7 @@ def test_holds_count_as_the_firmware_keeps_them():
 # As measured
 
 
-def _read(flight: Any) -> tuple[Mission, Pace]:
+def _read(flight: Any) -> tuple[MissionItems, Pace]:
     """A measured mission, and the pace by its parameters."""
     given = flight["params"]
     pace = Pace(
@@ -372,7 +372,7 @@ def _read(flight: Any) -> tuple[Mission, Pace]:
         for i in flight["items"][1:]
     )
     home = flight["home"]
-    return Mission(items, Home(GeoPoint(home["lat"], home["lon"]), home["alt"]), "ardupilot"), pace
+    return MissionItems(items, Home(GeoPoint(home["lat"], home["lon"]), home["alt"]), "ardupilot"), pace
 
 
 def predicted_duration(flight: dict):

@@ -9,7 +9,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7, plain_frame
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems, degrees_e7, plain_frame
 from gcs_windplan.planning.route_items import RoutePoint, route_mission
 
 HOME = Home(GeoPoint(46.813437951, 9.843772049), 1560.25)
@@ -60,7 +60,7 @@ items = st.builds(
     st.booleans(),
 )
 missions = st.builds(
-    Mission,
+    MissionItems,
     st.lists(items, max_size=8).map(tuple),
     homes,
     st.sampled_from([None, "ardupilot", "px4"]),
@@ -82,7 +82,7 @@ def content(item: MissionItem) -> tuple[Any, ...]:
     )
 
 
-def altitudes(mission: Mission) -> list[float]:
+def altitudes(mission: MissionItems) -> list[float]:
     """The altitudes of home, if there is one, and of the items [m]."""
     home = [] if mission.home is None else [mission.home.altitude]
     return home + [item.altitude for item in mission.items]

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from gcs_windplan.formats import write_plan, write_waypoints
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems
 
 from .conftest import same_number
 from .specimens import BUILT, HOME
@@ -22,7 +22,7 @@ from .specimens import BUILT, HOME
 single_precision_of_a_kilometre = 1e-4  # [m] altitudes travel as 32-bit floats
 one_millimetre = 1e-3  # [m]
 
-ODD = Mission(
+ODD = MissionItems(
     (
         MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_TAKEOFF, (15.5, 0, 0, 0), 0, 0, 30.0),
         MissionItem(Frame.GLOBAL_TERRAIN_ALT, Command.NAV_SPLINE_WAYPOINT, (2.25, 0, 0, 0), -46.8, -9.8, 50.0),
@@ -33,7 +33,7 @@ ODD = Mission(
     "ardupilot",
     "fixed-wing",
 )
-UNKNOWN = Mission(ODD.items, HOME)  # neither autopilot nor vehicle named
+UNKNOWN = MissionItems(ODD.items, HOME)  # neither autopilot nor vehicle named
 MISSIONS = {**BUILT, "odd": ODD, "unknown": UNKNOWN}
 home_item = MissionItem(
     Frame.GLOBAL,
@@ -47,7 +47,7 @@ every_mission = pytest.mark.parametrize("mission", MISSIONS.values(), ids=MISSIO
 
 
 @every_mission
-def test_mavwp_reads_waypoints(mission: Mission, mavwp_load: Callable[[Path], list[Any]], tmp_path: Path) -> None:
+def test_mavwp_reads_waypoints(mission: MissionItems, mavwp_load: Callable[[Path], list[Any]], tmp_path: Path) -> None:
     path = tmp_path / "mission.waypoints"
     write_waypoints(mission, path)
     theirs = mavwp_load(path)
@@ -76,7 +76,7 @@ def assert_imported(items: list[MissionItem], theirs: list[Any]) -> None:
 
 
 @every_mission
-def test_mavsdk_imports_waypoints_with_home(mission: Mission, mission_raw: Any, tmp_path: Path) -> None:
+def test_mavsdk_imports_waypoints_with_home(mission: MissionItems, mission_raw: Any, tmp_path: Path) -> None:
     path = tmp_path / "mission.waypoints"
     write_waypoints(mission, path)
     imported = mission_raw.import_mission_planner_mission(str(path))
@@ -84,7 +84,7 @@ def test_mavsdk_imports_waypoints_with_home(mission: Mission, mission_raw: Any, 
 
 
 @every_mission
-def test_mavsdk_imports_plan_without_home(mission: Mission, mission_raw: Any, tmp_path: Path) -> None:
+def test_mavsdk_imports_plan_without_home(mission: MissionItems, mission_raw: Any, tmp_path: Path) -> None:
     path = tmp_path / "mission.plan"
     write_plan(mission, path)
     imported = mission_raw.import_qgroundcontrol_mission(str(path))

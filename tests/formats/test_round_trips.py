@@ -17,33 +17,33 @@ from gcs_windplan.formats import (
     format_waypoints,
     parse_plan,
     parse_waypoints,
-    read_mission,
+    read_items,
     write_plan,
     write_waypoints,
 )
 from gcs_windplan.formats.digits import degrees_text, metres_text, number_text
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 
 from .specimens import BUILT, HOME, altitudes, content, home_content, missions
 
 one_millimetre = 1e-3  # [m]
 
 
-def assert_same(read: ReadMission, mission: Mission) -> None:
+def assert_same(read: ReadMission, mission: MissionItems) -> None:
     assert [content(item) for item in read.mission.items] == [content(item) for item in mission.items]
     assert home_content(read.mission.home) == home_content(mission.home)
     assert altitudes(read.mission) == pytest.approx(altitudes(mission), rel=0, abs=one_millimetre)
 
 
 @given(missions)
-def test_waypoints_come_back(mission: Mission) -> None:
+def test_waypoints_come_back(mission: MissionItems) -> None:
     read = parse_waypoints(format_waypoints(mission))
     assert_same(read, mission)
     assert read.repairs == ()
 
 
 @given(missions)
-def test_plans_come_back_with_their_vehicle(mission: Mission) -> None:
+def test_plans_come_back_with_their_vehicle(mission: MissionItems) -> None:
     read = parse_plan(format_plan(mission))
     assert_same(read, mission)
     back = read.mission
@@ -56,7 +56,7 @@ def test_plans_come_back_with_their_vehicle(mission: Mission) -> None:
 def test_files_are_stable_when_read_and_written_again(mission, write, ending, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     first, second = tmp_path / f"first.{ending}", tmp_path / f"second.{ending}"
     write(mission, first)
-    read = read_mission(first)
+    read = read_items(first)
     write(read.mission, second)
     assert read.repairs == ()
     assert first.read_bytes() == second.read_bytes()
@@ -89,7 +89,7 @@ def test_small_negative_numbers_do_not_leave_a_lone_minus() -> None:
 
 
 @given(missions)
-def test_waypoints_text_is_strict(mission: Mission) -> None:
+def test_waypoints_text_is_strict(mission: MissionItems) -> None:
     text = format_waypoints(mission)
     header, *rows, last = text.split("\n")
     assert (header, last) == ("QGC WPL 110", "")
@@ -105,7 +105,7 @@ def test_waypoints_text_is_strict(mission: Mission) -> None:
 
 
 @given(missions)
-def test_plan_has_what_its_readers_demand(mission: Mission) -> None:
+def test_plan_has_what_its_readers_demand(mission: MissionItems) -> None:
     def refuse(name: str) -> None:
         raise AssertionError(f"{name} is not JSON")
 
@@ -127,7 +127,7 @@ def test_plan_has_what_its_readers_demand(mission: Mission) -> None:
 )
 def test_altitude_modes_of_qgroundcontrol(frame: int, mode: int) -> None:
     item = MissionItem(frame, Command.NAV_WAYPOINT, (0, 0, 0, math.nan), 46.8, 9.8, 50.0)
-    root = json.loads(format_plan(Mission((item,), HOME)))
+    root = json.loads(format_plan(MissionItems((item,), HOME)))
     written = root["mission"]["items"][0]
     assert written["AltitudeMode"] == root["mission"]["globalPlanAltitudeMode"] == mode
     assert written["frame"] in (Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_TERRAIN_ALT)
@@ -137,12 +137,12 @@ def test_altitude_modes_of_qgroundcontrol(frame: int, mode: int) -> None:
 @pytest.mark.parametrize("format_mission", [format_plan, format_waypoints])
 def test_without_home_nothing_is_written(format_mission) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(FormatError, match="has none: give it one"):
-        format_mission(Mission((), None))
+        format_mission(MissionItems((), None))
 
 
 def test_jumps_count_items_from_one_in_both_formats() -> None:
     first = MissionItem(Frame.GLOBAL, Command.NAV_WAYPOINT, (0, 0, 0, 0), 46.8, 9.8, 1700.0)
     jump = MissionItem(Frame.MISSION, Command.DO_JUMP, (1, 3, 0, 0))
-    mission = Mission((first, jump), Home(HOME.point, 1500.0))
+    mission = MissionItems((first, jump), Home(HOME.point, 1500.0))
     assert parse_plan(format_plan(mission)).mission.items[1] == jump
     assert parse_waypoints(format_waypoints(mission)).mission.items[1] == jump

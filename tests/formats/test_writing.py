@@ -11,7 +11,7 @@ import pytest
 
 from gcs_windplan.errors import FormatError
 from gcs_windplan.formats import write_atomically, write_plan, write_waypoints
-from gcs_windplan.mission import Mission
+from gcs_windplan.mission import MissionItems
 
 
 def test_text_and_bytes_are_written_as_they_are(tmp_path: Path) -> None:
@@ -79,5 +79,5 @@ def test_failures_say_what_to_do(tmp_path: Path) -> None:
 @pytest.mark.parametrize("write", [write_plan, write_waypoints])
 def test_a_refused_mission_leaves_no_file(write, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(FormatError):
-        write(Mission(()), tmp_path / "mission")
+        write(MissionItems(()), tmp_path / "mission")
     assert list(tmp_path.iterdir()) == []

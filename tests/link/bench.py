@@ -19,8 +19,8 @@ from gcs_windplan.mission import (
     FencePolygon,
     Frame,
     Home,
-    Mission,
     MissionItem,
+    MissionItems,
     RallyPoint,
 )
 
@@ -34,7 +34,7 @@ FENCE = Fence((FencePolygon(SQUARE),), (FenceCircle(GeoPoint(46.85, 9.85), 120.5
 RALLY = (RallyPoint(GeoPoint(46.82, 9.83), 60.0), RallyPoint(GeoPoint(46.84, 9.86), 75.0))
 
 
-def survey(count: int = 6) -> Mission:
+def survey(count: int = 6) -> MissionItems:
     """A mission of `count` items: take-off, waypoints whose altitudes are no whole centimetres, return."""
     relative = Frame.GLOBAL_RELATIVE_ALT
     start = MissionItem(relative, Command.NAV_TAKEOFF, (15.0, 0, 0, 0), 46.813438, 9.843772, 40.0)
@@ -43,7 +43,7 @@ def survey(count: int = 6) -> Mission:
         for seq in range(count - 2)
     ]
     end = MissionItem(Frame.GLOBAL, Command.NAV_RETURN_TO_LAUNCH)
-    return Mission((start, *points, end)[:count] if count > 1 else (start,), HOME, fence=FENCE, rally=RALLY)
+    return MissionItems((start, *points, end)[:count] if count > 1 else (start,), HOME, fence=FENCE, rally=RALLY)
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class Bench:
     transport: SimulatedTransport
     session: Session
     peer: Peer
-    mission: Mission = field(default_factory=survey)
+    mission: MissionItems = field(default_factory=survey)
 
     def push(self, kind: MissionType = "mission", **options: Any) -> Part:
         return push_items(self.session, self.peer, kind, self.items(kind), **options)

@@ -18,7 +18,7 @@ from gcs_windplan.link.session import OWN, Session
 from gcs_windplan.link.upload import Upload
 from gcs_windplan.link.verified import clear_items, pull_items
 from gcs_windplan.link.wire import item_to_message
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems
 
 from .autopilots import CANCELLED, DENIED, ERROR, INVALID_SEQUENCE, NO_SPACE, ArduPilot, OtherStation, Stored
 from .bench import HOME, PROFILES, Bench, bench
@@ -383,7 +383,7 @@ def test_row_13_nan_that_the_vehicle_refuses(profile):
     bad = MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_WAYPOINT, (0, math.nan, 0, 0), 46.8, 9.8, 50)
     if profile == "px4":
         bad = replace(bad, frame=Frame.GLOBAL_TERRAIN_ALT)
-    stand.mission = Mission((*stand.mission.items[:3], bad), HOME)
+    stand.mission = MissionItems((*stand.mission.items[:3], bad), HOME)
     outcome = stand.push().outcome
     assert outcome.verdict == "rejected"
     expected = (7, "parameter 2 is nan") if profile == "ardupilot" else (2, "frame GLOBAL_TERRAIN_ALT")

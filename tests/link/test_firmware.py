@@ -8,7 +8,7 @@ import pytest
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items, with_fence, with_rally
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem, fence_items, rally_items
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems, fence_items, rally_items
 
 from .bench import FENCE, HOME, RALLY, survey
 
@@ -41,7 +41,7 @@ def test_px4_has_no_home_jumps_counted_from_0_and_frame_mission():
 
 
 def test_a_jump_to_home_is_refused_where_home_is_no_item():
-    mission = Mission((replace(JUMP, params=(0, 1, 0, 0)),), HOME)
+    mission = MissionItems((replace(JUMP, params=(0, 1, 0, 0)),), HOME)
     with pytest.raises(InputError, match="aim at an item from 1 on"):
         outgoing_items(mission, "mission", "px4")
 
@@ -64,7 +64,7 @@ def test_fence_and_rally_points_are_the_same_for_all():
     for autopilot in ("ardupilot", "px4", None):
         assert outgoing_items(MISSION, "fence", autopilot) == fence_items(FENCE)
         assert outgoing_items(MISSION, "rally", autopilot) == rally_items(RALLY)
-    bare = Mission(MISSION.items, HOME)
+    bare = MissionItems(MISSION.items, HOME)
     assert outgoing_items(bare, "fence", "px4") == outgoing_items(bare, "rally", "px4") == ()
     assert with_rally(with_fence(bare, fence_items(FENCE)), rally_items(RALLY)) == replace(
         bare, fence=FENCE, rally=RALLY
@@ -72,4 +72,4 @@ def test_fence_and_rally_points_are_the_same_for_all():
 
 
 def test_an_empty_mission_sends_nothing():
-    assert outgoing_items(Mission((), HOME), "mission", "ardupilot") == ()
+    assert outgoing_items(MissionItems((), HOME), "mission", "ardupilot") == ()

@@ -14,7 +14,7 @@ import pytest
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items
 from gcs_windplan.link.session import open_session
 from gcs_windplan.link.verified import clear_items, pull_items, push_items
-from gcs_windplan.mission import Command, Frame, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, MissionItem, MissionItems
 
 from .bench import HOME, survey
 
@@ -41,7 +41,7 @@ def test_push_and_pull(mavsdk_autopilot: SimpleNamespace, kind) -> None:
 def test_what_mavsdk_says_it_was_sent(mavsdk_autopilot: SimpleNamespace) -> None:
     odd = MissionItem(Frame.GLOBAL, Command.NAV_WAYPOINT, (1.5, 2.25, 0, math.nan), -46.8134387, 179.9999999, -12.75)
     jump = MissionItem(Frame.MISSION, Command.DO_JUMP, (2, 3, 0, 0))
-    mission = Mission((*survey(3).items, odd, jump), HOME)
+    mission = MissionItems((*survey(3).items, odd, jump), HOME)
     with open_session(mavsdk_autopilot.address, timeout=20.0) as session:
         peer = session.meet()
         part = push_items(session, peer, "mission", outgoing_items(mission, "mission", peer.autopilot))

@@ -18,8 +18,8 @@ from gcs_windplan.mission import (
     FenceCircle,
     FencePolygon,
     Frame,
-    Mission,
     MissionItem,
+    MissionItems,
     RallyPoint,
     ReturnPoint,
     degrees_e7,
@@ -219,6 +219,6 @@ def test_a_return_point_alone_is_a_fence() -> None:
 
 
 def test_a_mission_can_leave_its_fence_behind() -> None:
-    mission = Mission((WAYPOINT,), fence=Fence((FIELD, WOOD), (RANGE, MAST)), rally=RALLY)
-    assert mission.without_fence() == Mission((WAYPOINT,))
+    mission = MissionItems((WAYPOINT,), fence=Fence((FIELD, WOOD), (RANGE, MAST)), rally=RALLY)
+    assert mission.without_fence() == MissionItems((WAYPOINT,))
     assert repr(mission) == "<Mission of 1 items, no home, a fence, 2 rally points>"

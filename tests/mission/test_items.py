@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems, degrees_e7
 
 HERE = GeoPoint(46.8, 9.8)
 
@@ -74,13 +74,13 @@ def test_places_travel_scaled_in_global_frames_only() -> None:
 
 def test_missions_check_vehicle_and_speeds() -> None:
     with pytest.raises(InputError, match="autopilot 'apm' is neither"):
-        Mission((), autopilot="apm")  # type: ignore[arg-type]
+        MissionItems((), autopilot="apm")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="vehicle type 'boat' is neither"):
-        Mission((), vehicle_type="boat")  # type: ignore[arg-type]
+        MissionItems((), vehicle_type="boat")  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"cruise speed 0 m/s is not a positive number"):
-        Mission((), cruise_speed=0)
+        MissionItems((), cruise_speed=0)
     with pytest.raises(InputError, match="hover speed nan m/s"):
-        Mission((), hover_speed=math.nan)
+        MissionItems((), hover_speed=math.nan)
     with pytest.raises(InputError, match="home's altitude is nan"):
         Home(HERE, math.nan)
 
@@ -89,6 +89,6 @@ def test_reprs_are_tidy() -> None:
     item = MissionItem(3, 16, (0, 0, 0, math.nan), 46.8, 9.8, 50, autocontinue=False)
     place = "46.8000000, 9.8000000, 50.000 in GLOBAL_RELATIVE_ALT"
     assert repr(item) == f"<NAV_WAYPOINT (0, 0, 0, nan) at {place}, waits>"
-    mission = Mission((item,), Home(HERE, 1560.0), "px4", "multicopter")
+    mission = MissionItems((item,), Home(HERE, 1560.0), "px4", "multicopter")
     assert repr(mission) == "<Mission of 1 items, home 46.8000000, 9.8000000, 1560.0 m, px4, multicopter>"
-    assert repr(Mission(())) == "<Mission of 0 items, no home>"
+    assert repr(MissionItems(())) == "<Mission of 0 items, no home>"

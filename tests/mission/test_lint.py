@@ -9,7 +9,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.mission.lint import Firmware, lint, told
 
 NAN = math.nan
@@ -39,12 +39,12 @@ SOUND = (TAKEOFF, WAYPOINT, FAR, LAND)
 
 def found(items, firmware, home=HOME):
     """The findings' rules with their items."""
-    return {(finding.rule, finding.item) for finding in lint(Mission(tuple(items), home), *firmware)}
+    return {(finding.rule, finding.item) for finding in lint(MissionItems(tuple(items), home), *firmware)}
 
 
 def one(items, firmware, rule, home=HOME):
     """The only finding of a rule."""
-    (finding,) = [found for found in lint(Mission(tuple(items), home), *firmware) if found.rule == rule]
+    (finding,) = [found for found in lint(MissionItems(tuple(items), home), *firmware) if found.rule == rule]
     return finding
 
 
@@ -335,7 +335,7 @@ def test_without_a_vehicle_type_what_both_have_in_common():
 
 def test_alike_findings_are_told_in_one_line():
     hold = [at(Command.NAV_WAYPOINT, 10.0 * step, params=(0, 0, 0, 10.0 * step)) for step in range(1, 6)]
-    lines = told(lint(Mission((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), *COPTER))
+    lines = told(lint(MissionItems((TAKEOFF, *hold, WAYPOINT, hold[0], at(Command.NAV_LOITER_UNLIM)), HOME), *COPTER))
     assert [(line.effect, line.line) for line in lines] == [
         (
             "dropped",
@@ -347,7 +347,7 @@ def test_alike_findings_are_told_in_one_line():
 
 def test_worst_effects_come_first_and_the_whole_mission_before_its_items():
     items = (at(Command.NAV_WAYPOINT, up=61.999), at(Command.NAV_WAYPOINT, params=(0, NAN, 0, 0)))
-    findings = lint(Mission(items, HOME), *COPTER)
+    findings = lint(MissionItems(items, HOME), *COPTER)
     assert [(found.rule, found.item) for found in findings] == [
         ("takeoff-missing", None),
         ("altitude-rounded", 1),

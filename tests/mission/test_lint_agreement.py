@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import FormatError, InputError
-from gcs_windplan.formats import read_mission
+from gcs_windplan.formats import read_items
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.wire import item_to_message
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, takes_place
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems, takes_place
 from gcs_windplan.mission.kept import float_text, same_float
 from gcs_windplan.mission.lint import lint
 from gcs_windplan.mission.supported import PX4_WITH_PLACE, PX4_WITHOUT_PLACE
@@ -92,7 +92,7 @@ def items(params, frame=frames):
 
 
 missions = st.lists(st.one_of(items(quiet, st.just(3)), items(quiet), items(numbers)), min_size=1, max_size=7).map(
-    lambda found: Mission(tuple(found), HOME)
+    lambda found: MissionItems(tuple(found), HOME)
 )
 
 
@@ -165,7 +165,7 @@ def test_the_numbers_that_change_are_those_that_come_back_changed(item, autopilo
         item = replace(item, params=(1.0, *item.params[1:]))
     if autopilot == "px4" and not takes_place(item.command):
         item = replace(item, frame=int(Frame.MISSION))
-    mission = Mission((item,), HOME)
+    mission = MissionItems((item,), HOME)
     held = uploaded(sendable(mission, autopilot), autopilot)
     assume(held is not None)
     if autopilot == "px4" and item.command == Command.DO_JUMP:
@@ -213,8 +213,8 @@ def test_both_know_the_same_commands(command, autopilot):
     item = MissionItem(frame, command, (0.0, 0.0, 0.0, 0.0), 46.8 if placed else 0.0, 9.8 if placed else 0.0, 50.0)
     if command == Command.DO_JUMP:
         item = replace(item, params=(1.0, 1.0, 0.0, 0.0))
-    held = uploaded(messages(Mission((item,), HOME), autopilot), autopilot)
-    rejected = {found.rule for found in lint(Mission((item,), HOME), autopilot) if found.effect == "rejected"}
+    held = uploaded(messages(MissionItems((item,), HOME), autopilot), autopilot)
+    rejected = {found.rule for found in lint(MissionItems((item,), HOME), autopilot) if found.effect == "rejected"}
     assert (held is None) == bool(rejected & UPLOAD)
     if autopilot == "px4":
         assert (held is not None) == (command in PX4_WITH_PLACE | PX4_WITHOUT_PLACE)
@@ -224,7 +224,7 @@ def test_both_know_the_same_commands(command, autopilot):
 @pytest.mark.parametrize("more", [0, 1])
 def test_both_have_the_same_room(autopilot, most, more):
     item = MissionItem(3, Command.NAV_WAYPOINT, (0.0, 0.0, 0.0, 0.0), 46.8, 9.8, single(50.0))
-    mission = Mission((item,) * (most + more), HOME)
+    mission = MissionItems((item,) * (most + more), HOME)
     rules = {found.rule for found in lint(mission, autopilot, "multicopter")}
     assert ("capacity" in rules) == (uploaded(messages(mission, autopilot), autopilot) is None) == bool(more)
 
@@ -237,7 +237,7 @@ FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file()) if CORPUS.i
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_missions_of_the_wild_get_a_verdict_that_the_stand_in_shares(path, autopilot):
     try:
-        mission = read_mission(path).mission
+        mission = read_items(path).mission
     except FormatError:
         pytest.skip("no mission that can be read")
     for kind in ("fixed-wing", None, "multicopter"):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.mission.path import Told, course_of
 from tests.flight.test_duration import FRAME, HOME, HOME_AGAIN, at, free, mission, speed, takeoff
 
@@ -78,15 +78,15 @@ def test_a_fixed_wing_circles_glides_and_keeps_its_airspeed():
 
 def test_another_frame_moves_the_places_and_nothing_else():
     far = MissionItem(Frame.GLOBAL, Command.NAV_WAYPOINT, latitude_deg=36.51, longitude_deg=-84.29, altitude=400)
-    there = course_of(Mission((takeoff(), far, HOME_AGAIN), Home(HOME.point, 300.0), "ardupilot"), FRAME)
-    here = course_of(Mission((takeoff(), far, HOME_AGAIN), Home(HOME.point, 300.0), "ardupilot"))
+    there = course_of(MissionItems((takeoff(), far, HOME_AGAIN), Home(HOME.point, 300.0), "ardupilot"), FRAME)
+    here = course_of(MissionItems((takeoff(), far, HOME_AGAIN), Home(HOME.point, 300.0), "ardupilot"))
     assert there.moves == here.moves
     assert there.moves[-1].kind == "return"
 
 
 def test_a_mission_without_home_has_no_course():
     with pytest.raises(InputError, match="names no home"):
-        course_of(Mission((takeoff(),)))
+        course_of(MissionItems((takeoff(),)))
 
 
 def test_what_never_ends_and_what_ends_in_the_air():

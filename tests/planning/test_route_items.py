@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems
 from gcs_windplan.planning.route_items import RoutePoint, route_mission
 
 HOME = Home(GeoPoint(46.8134, 9.8437), 1560.0)
@@ -27,7 +27,7 @@ a_hundredth = 0.01  # [m/s]
 WAYPOINT, SPEED, TAKEOFF = Command.NAV_WAYPOINT, Command.DO_CHANGE_SPEED, Command.NAV_TAKEOFF
 
 
-def build(route: Any = ROUTE, **wishes: Any) -> Mission:
+def build(route: Any = ROUTE, **wishes: Any) -> MissionItems:
     standard = {
         "autopilot": "ardupilot",
         "vehicle_type": "multicopter",
@@ -40,7 +40,7 @@ def build(route: Any = ROUTE, **wishes: Any) -> Mission:
     return route_mission(HOME, route, **{**standard, **wishes})
 
 
-def commands(mission: Mission) -> list[int]:
+def commands(mission: MissionItems) -> list[int]:
     return [item.command for item in mission.items]
 
 

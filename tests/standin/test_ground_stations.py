@@ -21,7 +21,7 @@ from gcs_windplan.formats import parse_waypoints, write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.link.transport import open_transport
-from gcs_windplan.mission import Command, Frame, Home, Mission, MissionItem, degrees_e7, plain_frame
+from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems, degrees_e7, plain_frame
 from gcs_windplan.standin.airframe import airframe_of
 from gcs_windplan.standin.items import FENCE, MISSION, RALLY
 from gcs_windplan.standin.service import serve
@@ -156,7 +156,7 @@ def mavproxy(port: int, folder: Path) -> Iterator[SimpleNamespace]:
         process.stdout.close()
 
 
-def mission_file(folder: Path) -> tuple[Path, Mission]:
+def mission_file(folder: Path) -> tuple[Path, MissionItems]:
     items = (
         MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_TAKEOFF, altitude=30.0),
         MissionItem(Frame.GLOBAL, Command.DO_CHANGE_SPEED, (1.0, 7.5, -1.0, 0.0)),
@@ -164,7 +164,7 @@ def mission_file(folder: Path) -> tuple[Path, Mission]:
         MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_WAYPOINT, (3, 0, 0, 0), 36.5018, -84.2983, 70.0),
         MissionItem(Frame.GLOBAL, Command.NAV_RETURN_TO_LAUNCH),
     )
-    mission = Mission(items, Home(GeoPoint(36.4, -84.2), 250.0), "ardupilot", "multicopter")
+    mission = MissionItems(items, Home(GeoPoint(36.4, -84.2), 250.0), "ardupilot", "multicopter")
     path = folder / "line.waypoints"
     write_waypoints(mission, path)
     return path, mission

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission
+from gcs_windplan.mission.items import MissionItems
 from gcs_windplan.mission.lint.finding import Findings, Firmware, FirmwareFinding, named, numbered
 from gcs_windplan.vehicle import VehicleType
 
@@ -47,7 +47,7 @@ _PASSED_OVER: dict[VehicleType | None, frozenset[int]] = {
 _PX4_DOES_NOT_FLY = frozenset((Command.CONDITION_DELAY, Command.CONDITION_DISTANCE))
 
 
-def carrying_out(mission: Mission, firmware: Firmware) -> Findings:
+def carrying_out(mission: MissionItems, firmware: Firmware) -> Findings:
     """Items that are passed over in flight, or for which the mission is not flown at all."""
     for number, item in numbered(mission):
         if firmware.autopilot == "px4":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.lint.finding import (
     LANDINGS,
     TAKEOFFS,
@@ -29,7 +29,7 @@ _ENDS = LANDINGS | {Command.NAV_RETURN_TO_LAUNCH}
 _ENTRIES = frozenset((Command.DO_LAND_START, Command.JUMP_TAG, mavlink.MAV_CMD_DO_RETURN_PATH_START))
 
 
-def course(mission: Mission, firmware: Firmware) -> Findings:
+def course(mission: MissionItems, firmware: Firmware) -> Findings:
     """Missions without anything to fly, without a take-off, and items that are never reached."""
     if not any(is_navigation(item.command) for item in mission.items):
         fact = f"{firmware.name} ends a mission at once that has no item to fly"
@@ -40,7 +40,7 @@ def course(mission: Mission, firmware: Firmware) -> Findings:
     yield from _unreached(mission, firmware)
 
 
-def _takeoff_missing(mission: Mission, firmware: Firmware) -> Findings:
+def _takeoff_missing(mission: MissionItems, firmware: Firmware) -> Findings:
     """ArduCopter mode_auto.cpp, init: "Missing Takeoff Cmd"; PX4 mission.cpp, do_need_vertical_takeoff."""
     flown = [item for item in mission.items if is_navigation(item.command)][:_LOOKED_AT]
     first = next((item for item in flown if item.command != Command.NAV_DELAY), None)
@@ -55,7 +55,7 @@ def _takeoff_missing(mission: Mission, firmware: Firmware) -> Findings:
         yield FirmwareFinding("takeoff-missing", "changed", None, fact, begins, "begin with NAV_TAKEOFF")
 
 
-def _unreached(mission: Mission, firmware: Firmware) -> Findings:
+def _unreached(mission: MissionItems, firmware: Firmware) -> Findings:
     way = _Way(mission.items, firmware)
     reached = way.reached()
     for number, item in numbered(mission):

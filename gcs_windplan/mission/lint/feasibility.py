@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission.commands import Command, Frame, plain_frame
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.kept import float_text
 from gcs_windplan.mission.lint.finding import TAKEOFFS, Findings, Firmware, FirmwareFinding, named, numbered
 from gcs_windplan.mission.supported import PX4_WITH_PLACE, PX4_WITHOUT_PLACE
@@ -48,7 +48,7 @@ _GATE_APART = 0.05  # [m] checkDistancesBetweenWaypoints
 _EPSILON = 1.1920929e-07  # [m] FLT_EPSILON
 
 
-def feasibility(mission: Mission, firmware: Firmware) -> Findings:
+def feasibility(mission: MissionItems, firmware: Firmware) -> Findings:
     """Take-off first and above home, the first waypoint near home, nothing below home, gates apart."""
     if firmware.autopilot != "px4":
         return
@@ -64,7 +64,7 @@ def feasibility(mission: Mission, firmware: Firmware) -> Findings:
             )
 
 
-def above_home(item: MissionItem, mission: Mission) -> float | None:
+def above_home(item: MissionItem, mission: MissionItems) -> float | None:
     """An item's altitude above home [m], None where home is not known, or the frame another."""
     frame = plain_frame(item.frame)
     if frame == Frame.GLOBAL_RELATIVE_ALT:
@@ -80,7 +80,7 @@ def apart(one: MissionItem, other: MissionItem) -> float:
     return math.hypot(*frame.to_local(other.latitude_deg, other.longitude_deg)[0])
 
 
-def _takeoffs(mission: Mission) -> Findings:
+def _takeoffs(mission: MissionItems) -> Findings:
     first: int | None = None
     for number, item in numbered(mission):
         if item.command in TAKEOFFS:
@@ -102,7 +102,7 @@ def _counts_as_waypoint(item: MissionItem) -> bool:
     return known and item.command in _NO_LESS_THAN_WAYPOINTS
 
 
-def _first_waypoint(mission: Mission) -> Findings:
+def _first_waypoint(mission: MissionItems) -> Findings:
     placed = [(number, item) for number, item in numbered(mission) if item.command in POSITIONS and item.has_place]
     if not placed or mission.home is None:
         return
@@ -119,7 +119,7 @@ def _first_waypoint(mission: Mission) -> Findings:
         )
 
 
-def _gates(mission: Mission) -> Findings:
+def _gates(mission: MissionItems) -> Findings:
     gate = mavlink.MAV_CMD_CONDITION_GATE
     placed = [pair for pair in numbered(mission) if pair[1].command in POSITIONS | {gate} and pair[1].has_place]
     for (_, before), (number, item) in itertools.pairwise(placed):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from gcs_windplan.mission.commands import Command, command_name
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 Effect: TypeAlias = Literal["rejected", "dropped", "rounded", "changed", "ignored", "warned"]
@@ -71,7 +71,7 @@ class FirmwareFinding:
 Findings: TypeAlias = Iterator[FirmwareFinding]
 
 
-def numbered(mission: Mission) -> Iterator[tuple[int, MissionItem]]:
+def numbered(mission: MissionItems) -> Iterator[tuple[int, MissionItem]]:
     """The items with their numbers."""
     return enumerate(mission.items, start=1)
 

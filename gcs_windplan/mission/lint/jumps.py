@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.lint.finding import Findings, Firmware, FirmwareFinding, numbered
 
 _TRACKED = 15  # AP_Mission.h, AP_MISSION_MAX_NUM_DO_JUMP_COMMANDS on boards with less than 500 kB of memory
 _FOREVER = -1.0  # AP_Mission.h, AP_MISSION_JUMP_REPEAT_FOREVER
 
 
-def jumps(mission: Mission, firmware: Firmware) -> Findings:
+def jumps(mission: MissionItems, firmware: Firmware) -> Findings:
     """Jumps that lead nowhere, are never or always taken, or count otherwise than the file does."""
     taken = [(number, item) for number, item in numbered(mission) if item.command == Command.DO_JUMP]
     for number, item in taken:

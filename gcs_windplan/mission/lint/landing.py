@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from gcs_windplan.mission.commands import Command
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.lint.feasibility import POSITIONS, above_home, apart
 from gcs_windplan.mission.lint.finding import LANDINGS, Findings, Firmware, FirmwareFinding, any_of, named, numbered
 
@@ -18,7 +18,7 @@ _LENIENCE = 0.1  # [deg] checkFixedWindLandApproach
 _APPROACHES = (Command.NAV_WAYPOINT, Command.NAV_LOITER_TO_ALT)
 
 
-def landing(mission: Mission, firmware: Firmware) -> Findings:
+def landing(mission: MissionItems, firmware: Firmware) -> Findings:
     """Landings that PX4 fixed-wings refuse to fly."""
     if firmware.autopilot != "px4":
         return
@@ -32,7 +32,7 @@ def landing(mission: Mission, firmware: Firmware) -> Findings:
                 yield from _approach(number, item, mission)
 
 
-def _pattern(mission: Mission) -> Findings:
+def _pattern(mission: MissionItems) -> Findings:
     starts = [number for number, item in numbered(mission) if item.command == Command.DO_LAND_START]
     landings = [number for number, item in numbered(mission) if item.command in LANDINGS]
     # rc.fw_defaults sets MIS_TKO_LAND_REQ to 2: a landing is required
@@ -54,7 +54,7 @@ def _pattern(mission: Mission) -> Findings:
             yield FirmwareFinding("land-start-before-return", "rejected", number, fact, before, "remove one of them")
 
 
-def _approach(number: int, item: MissionItem, mission: Mission) -> Findings:
+def _approach(number: int, item: MissionItem, mission: MissionItems) -> Findings:
     before = mission.items[number - 2]
     if before.command not in POSITIONS:
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeAlias
 
-from gcs_windplan.mission.items import Mission
+from gcs_windplan.mission.items import MissionItems
 from gcs_windplan.mission.lint.carrying_out import carrying_out
 from gcs_windplan.mission.lint.course import course
 from gcs_windplan.mission.lint.feasibility import feasibility
@@ -17,7 +17,7 @@ from gcs_windplan.mission.lint.places import places
 from gcs_windplan.mission.lint.upload import upload
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
-_Rules: TypeAlias = Callable[[Mission, Firmware], Findings]
+_Rules: TypeAlias = Callable[[MissionItems, Firmware], Findings]
 _AT_UPLOAD: tuple[_Rules, ...] = (upload, jumps)
 _AFTERWARDS: tuple[_Rules, ...] = (parameters, places, carrying_out, course, feasibility, landing)
 _NUMBERS = ("dropped", "rounded", "changed")
@@ -25,7 +25,7 @@ _MENDED = "frame-mission-needed"  # what is sent with the right frame, as `push`
 
 
 def lint(
-    mission: Mission, autopilot: Autopilot, vehicle_type: VehicleType | None = None
+    mission: MissionItems, autopilot: Autopilot, vehicle_type: VehicleType | None = None
 ) -> tuple[FirmwareFinding, ...]:
     """What the firmware does to the mission, in the order of its items, the whole mission first.
 
@@ -38,7 +38,7 @@ def lint(
     return _found(mission, Firmware(autopilot, vehicle_type))
 
 
-def _found(mission: Mission, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
+def _found(mission: MissionItems, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
     found = [finding for rules in _AT_UPLOAD for finding in rules(mission, firmware)]
     refused = {one.item for one in found if one.effect == "rejected" and one.rule != _MENDED} - {None}
     found += [finding for rules in _AFTERWARDS for finding in rules(mission, firmware)]
@@ -46,7 +46,7 @@ def _found(mission: Mission, firmware: Firmware) -> tuple[FirmwareFinding, ...]:
     return tuple(sorted(told, key=lambda finding: (finding.item or 0, EFFECTS.index(finding.effect))))
 
 
-def _shared(mission: Mission, autopilot: Autopilot) -> tuple[FirmwareFinding, ...]:
+def _shared(mission: MissionItems, autopilot: Autopilot) -> tuple[FirmwareFinding, ...]:
     """What multicopters and fixed-wings have in common."""
     types: tuple[VehicleType, VehicleType] = ("multicopter", "fixed-wing")
     kinds = ({_key(found) for found in _found(mission, Firmware(autopilot, kind))} for kind in types)

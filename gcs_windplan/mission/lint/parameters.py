@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 from gcs_windplan.mission.commands import Command, Frame, takes_place
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.kept import BYTE, float_text, parameter_letters, same_float, single
 from gcs_windplan.mission.lint.finding import Effect, Findings, Firmware, FirmwareFinding, named, numbered
 from gcs_windplan.mission.lint.meaning import meaning
@@ -23,7 +23,7 @@ _SIGNS = "sl"
 _CUT = "iwungqtrc"
 
 
-def parameters(mission: Mission, firmware: Firmware) -> Findings:
+def parameters(mission: MissionItems, firmware: Firmware) -> Findings:
     """Parameters that are dropped, rounded or changed, and `autocontinue`."""
     for number, item in numbered(mission):
         for position, letter, sent in _parts(item, firmware):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcs_windplan.mission.commands import Command, Frame, is_global, plain_frame, takes_place
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.kept import float_text, keeps_altitude, same_float
 from gcs_windplan.mission.lint.finding import Findings, Firmware, FirmwareFinding, named, numbered
 from gcs_windplan.mission.lint.parameters import held_value
@@ -17,7 +17,7 @@ _FLOWN_TO = _CIRCLES | _WAYPOINTS | {Command.NAV_LAND, Command.NAV_VTOL_LAND, Co
 _LOWEST_TAKEOFF = 1.0  # [m] ArduCopter takeoff.cpp and mode_auto.cpp, takeoff_start: 100 cm
 
 
-def places(mission: Mission, firmware: Firmware) -> Findings:
+def places(mission: MissionItems, firmware: Firmware) -> Findings:
     """Places that are rounded, or mean something else than they say."""
     for number, item in numbered(mission):
         if firmware.autopilot == "ardupilot":
@@ -89,7 +89,7 @@ def _place_zero(number: int, item: MissionItem, firmware: Firmware) -> Findings:
         yield FirmwareFinding("place-zero", "changed", number, fact, "", "write the place unless that is meant")
 
 
-def _merged(mission: Mission, firmware: Firmware) -> Findings:
+def _merged(mission: MissionItems, firmware: Firmware) -> Findings:
     """Both firmwares get 1e-7 degrees, 11 mm: that matters only where two places become one."""
     before: tuple[int, MissionItem] | None = None
     for number, item in numbered(mission):

@@ -7,7 +7,7 @@ import math
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.mission.commands import Command, Frame, frame_name, is_global, plain_frame, takes_place
-from gcs_windplan.mission.items import Mission, MissionItem
+from gcs_windplan.mission.items import MissionItem, MissionItems
 from gcs_windplan.mission.kept import float_text
 from gcs_windplan.mission.lint.finding import Findings, Firmware, FirmwareFinding, named, numbered
 from gcs_windplan.mission.supported import (
@@ -35,14 +35,14 @@ _INSTEAD: dict[int, str] = {
 _LARGEST_FLOAT = 3.4028235e38  # IEEE 754 binary32
 
 
-def upload(mission: Mission, firmware: Firmware) -> Findings:
+def upload(mission: MissionItems, firmware: Firmware) -> Findings:
     """Everything that makes the vehicle answer an upload with a no."""
     yield from _capacity(mission, firmware)
     for number, item in numbered(mission):
         yield from _px4(number, item) if firmware.autopilot == "px4" else _ardupilot(number, item, firmware)
 
 
-def _capacity(mission: Mission, firmware: Firmware) -> Findings:
+def _capacity(mission: MissionItems, firmware: Firmware) -> Findings:
     if firmware.autopilot == "px4":
         most, what = PX4_CAPACITY, "items"  # navigation.h
     else:  # StorageManager.cpp; AP_Mission.cpp, num_commands_max

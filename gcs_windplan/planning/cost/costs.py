@@ -51,7 +51,12 @@ _CODES = {
 
 @dataclass(frozen=True, slots=True)
 class CostChoice:
-    """Which cost, with the weights of the hybrid one (11)."""
+    """Which cost, with the weights of the hybrid one (11).
+
+    >>> import gcs_windplan as gw
+    >>> print(gw.CostChoice("hybrid", distance=0.3, angle=0.7))
+    hybrid (distance 0.3, angle 0.7)
+    """
 
     name: CostName = "time"
     distance: float = 0.1
