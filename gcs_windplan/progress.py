@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from gcs_windplan.errors import CancelledError
 
@@ -60,3 +60,21 @@ class CancelToken:
         """Raise `CancelledError` if the work is to stop."""
         if self.cancelled:
             raise CancelledError("cancelled: it was told to stop before it was done")
+
+
+@dataclass(frozen=True, slots=True)
+class Tracker:
+    """What long work calls between its steps: it stops where it is told to, and tells how far it is."""
+
+    progress: ProgressCallback | None = None
+    cancel: CancelToken | None = None
+
+    def at(self, stage: str, done: int = 0, total: int | None = None) -> None:
+        """The work is at a stage, so many steps done. Raises `CancelledError`."""
+        if self.cancel is not None:
+            self.cancel.raise_if_cancelled()
+        if self.progress is not None:
+            self.progress(Progress(stage, done, total))
+
+
+UNTRACKED: Final = Tracker()
