@@ -33,6 +33,10 @@ class Problem:
 
     `field` is the dotted path of the mission file's field (`vehicle.airspeed`, `via.0`); `file`, `line` and `column`
     (both counted from 1) say where it stands, as far as that is known.
+
+    >>> import gcs_windplan as gw
+    >>> print(gw.Problem("is missing", "vehicle.airspeed", line=4))
+    4: vehicle.airspeed: is missing
     """
 
     message: str

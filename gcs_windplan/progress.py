@@ -12,7 +12,12 @@ from gcs_windplan.errors import CancelledError
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a piece of work is: a `stage` in plain words, `done` of `total` steps (None: nobody knows how many)."""
+    """How far a piece of work is: a `stage` in plain words, `done` of `total` steps (None: nobody knows how many).
+
+    >>> import gcs_windplan as gw
+    >>> print(gw.Progress("departures", 3, 25))
+    departures: 3 of 25
+    """
 
     stage: str
     done: int
@@ -29,6 +34,12 @@ class CancelToken:
     """Tells work in another thread to stop: whoever started it keeps the token and calls `cancel`.
 
     The work looks at it between its steps, so that it ends soon after, not at once. A token stays cancelled.
+
+    >>> import gcs_windplan as gw
+    >>> token = gw.CancelToken()
+    >>> token.cancel()
+    >>> token.cancelled
+    True
     """
 
     __slots__ = ("_event",)

@@ -13,6 +13,7 @@ from rasterio.warp import transform
 
 import gcs_windplan as gw
 from gcs_windplan.jobs.requests import read_request
+from gcs_windplan.planning.planner import PlannedRoute, plan_route
 
 half_a_decimetre_per_second = 0.05
 
@@ -51,10 +52,10 @@ departure: 2017-06-03T19:00Z
 """
 
 
-def plan(tmp_path: Path, text: str, **values) -> gw.Plan:
+def plan(tmp_path: Path, text: str, **values) -> PlannedRoute:
     path = tmp_path / "mission.yaml"
     path.write_text(text.format(**values))
-    return gw.plan_route(read_request(path))
+    return plan_route(read_request(path))
 
 
 def pixel_heights(dem: Path, latitudes, longitudes) -> np.ndarray:

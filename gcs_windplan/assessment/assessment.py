@@ -222,6 +222,13 @@ class Assessment:
     """A mission, judged.
 
     `remarks` say what was repaired, ignored or assumed on the way; they do not count as findings.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> gw.review(mission).sums.clearance > 0
+    True
     """
 
     name: str

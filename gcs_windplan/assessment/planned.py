@@ -12,14 +12,14 @@ from gcs_windplan.assessment.judge import assess
 from gcs_windplan.mission import MissionItems
 from gcs_windplan.mission.firmware import firmware_of
 from gcs_windplan.planning.export import mission_of
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 from gcs_windplan.planning.request import Request
 from gcs_windplan.vehicle import MotionProfile, Vehicle
 
 _FASTEST: Final = 1000.0  # [m/s] no limit
 
 
-def assess_plan(plan: Plan, sources: Sequence[Source] = ()) -> Assessment:
+def assess_plan(plan: PlannedRoute, sources: Sequence[Source] = ()) -> Assessment:
     """Judge the mission that flies a plan, by the terrain, wind, vehicle and limits of its request."""
     return assess(replace(case_of(plan.request, mission_of(plan), sources), remarks=plan.notes))
 

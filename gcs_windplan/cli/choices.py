@@ -42,7 +42,7 @@ def options_named() -> Iterator[None]:
         raise error.told_as(named) from None
 
 
-def read_mission(file: Path, airspeed: str | None) -> Mission:
+def asked_mission(file: Path, airspeed: str | None) -> Mission:
     """The mission in a mission file, with the command line's airspeed."""
     from gcs_windplan.jobs.missionfile import read_mission
 

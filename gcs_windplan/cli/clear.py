@@ -9,6 +9,7 @@ import typer
 from gcs_windplan.cli import linking
 
 HELP = "Delete a vehicle's mission, fence or rally points, and read back that nothing is left (but ArduPilot's home)."
+EPILOG = linking.EPILOG
 
 
 def clear(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, output_folder, read_mission
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, asked_mission, output_folder
 
 HELP = "Plan by every cost; print time, energy, length and search time side by side; write compare.png."
 
 
 def compare(mission: MissionFile, airspeed: Airspeed = None, output: Folder = None) -> None:
     """Plan by each cost and print a table."""
-    asked = read_mission(mission, airspeed)
+    asked = asked_mission(mission, airspeed)
 
     from gcs_windplan.cli.plan import report, write
     from gcs_windplan.cli.tables import print_comparison

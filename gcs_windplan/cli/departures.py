@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gcs_windplan.cli.choices import Airspeed, MissionFile, read_mission
+from gcs_windplan.cli.choices import Airspeed, MissionFile, asked_mission
 
 if TYPE_CHECKING:
     from gcs_windplan.planning.departures import Departure
@@ -45,11 +45,12 @@ def departures(
     from gcs_windplan.jobs.moments import moments_of
     from gcs_windplan.jobs.plans import as_request, swept
     from gcs_windplan.jobs.winds import DAY
+    from gcs_windplan.progress import UNTRACKED
 
-    asked = read_mission(mission, airspeed)
+    asked = asked_mission(mission, airspeed)
     moments = moments_of(first, last, every, as_moment(asked.departure), _OPTIONS.__getitem__)
     _refuse_odd(len(moments))
-    request = as_request(asked, None, moments[0], (moments[-1] - moments[0]).total_seconds() + DAY)
+    request = as_request(asked, UNTRACKED, moments[0], (moments[-1] - moments[0]).total_seconds() + DAY)
     since = time.monotonic()
     found = list(_shown(swept(request, moments, cores), len(moments), not json_output))
     took = time.monotonic() - since

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, file_stem, output_folder, read_mission
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, asked_mission, file_stem, output_folder
 
 if TYPE_CHECKING:
-    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.planner import PlannedRoute
     from gcs_windplan.planning.request import Request
 
 HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
@@ -32,7 +32,7 @@ def plan(
     force: Annotated[bool, typer.Option("--force", help="Write it even if it breaks the battery's reserve.")] = False,
 ) -> None:
     """Plan and write."""
-    asked = read_mission(mission, airspeed)
+    asked = asked_mission(mission, airspeed)
 
     from gcs_windplan.cli.tables import print_legs
     from gcs_windplan.jobs.mission import as_cost
@@ -57,7 +57,7 @@ def plan(
         typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
 
 
-def render(planned: Plan) -> dict[str, str | bytes]:
+def render(planned: PlannedRoute) -> dict[str, str | bytes]:
     """The content of every file of a plan, by file name; nothing is written yet."""
     from gcs_windplan.formats import format_plan, format_waypoints
     from gcs_windplan.formats.summary import format_summary

@@ -18,6 +18,7 @@ HELP = """Pull a vehicle's mission into a .plan or .waypoints file.
 Without --type a .plan gets mission, fence and rally points, a .waypoints the mission, which is all that it can hold.
 The file is written when everything was read, or not at all.
 """
+EPILOG = linking.EPILOG
 
 
 def pull(

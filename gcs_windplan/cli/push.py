@@ -16,6 +16,7 @@ accepted (the vehicle said so, and what was read back is what was sent, as far a
 or unknown. Without --type everything goes that the file holds: its mission, and its fence and rally points if it has
 any; what the vehicle has of kinds that the file lacks stays. Ctrl-C cancels the transfer and tells the vehicle.
 """
+EPILOG = linking.EPILOG
 
 Kinds: TypeAlias = Annotated[
     Literal["mission", "fence", "rally", "all"] | None,

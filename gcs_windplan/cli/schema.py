@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 HELP = "Print every field of the mission file with its unit, default and meaning."
+EPILOG = None
 
 
 def schema(

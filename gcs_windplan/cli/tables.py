@@ -12,7 +12,7 @@ from rich.table import Table
 from gcs_windplan.flight import clock
 
 if TYPE_CHECKING:
-    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.planner import PlannedRoute
 
 _WIDTH, _WIDE = 100, 120  # where the output is no terminal
 
@@ -23,7 +23,7 @@ def make_console(width: int = _WIDTH) -> Console:
     return console if console.is_terminal else Console(highlight=False, width=width)
 
 
-def print_legs(plan: Plan) -> None:
+def print_legs(plan: PlannedRoute) -> None:
     """The legs of a plan, a row each, and the totals."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     for name in ("leg", "track °", "heading °", "length m", "climb m", "to m AMSL", "ground m/s", "wind along",
@@ -45,13 +45,13 @@ def print_legs(plan: Plan) -> None:
         console.print(f"note: {note}", soft_wrap=True, markup=False)
 
 
-def _power_columns(plan: Plan) -> list[str]:
+def _power_columns(plan: PlannedRoute) -> list[str]:
     """What the table says of airspeeds and the battery, where that is known."""
     free = ["air m/s"] if plan.request.free_airspeed else []
     return free + (["left %", "home Wh"] if plan.battery and plan.ways_home else [])
 
 
-def _power_cells(plan: Plan) -> list[list[str]]:
+def _power_cells(plan: PlannedRoute) -> list[list[str]]:
     """The same for each leg."""
     free = [[f"{leg.airspeed:.1f}"] if plan.request.free_airspeed else [] for leg in plan.legs]
     if plan.battery is None or plan.ways_home is None:
@@ -64,7 +64,7 @@ def _whole_watt_hours(joules: float) -> str:
     return f"{joules / 3600:.0f}" if joules < float("inf") else "no way"
 
 
-def flown_line(plan: Plan) -> str | None:
+def flown_line(plan: PlannedRoute) -> str | None:
     """How long the autopilot takes for the mission, in words; None where that is not known."""
     from gcs_windplan.planning.export import flown_duration
 
@@ -77,7 +77,7 @@ def flown_line(plan: Plan) -> str | None:
     )
 
 
-def summary_lines(plan: Plan) -> list[str]:
+def summary_lines(plan: PlannedRoute) -> list[str]:
     """The totals of a plan, in words."""
     totals, effort = plan.totals, plan.effort
     return [
@@ -92,7 +92,7 @@ def summary_lines(plan: Plan) -> list[str]:
     ]
 
 
-def _head(plan: Plan) -> list[str]:
+def _head(plan: PlannedRoute) -> list[str]:
     """What the route is, and how long it takes; over an ensemble in its members, too."""
     totals = plan.totals
     lines = [
@@ -109,7 +109,7 @@ def _head(plan: Plan) -> list[str]:
     return lines
 
 
-def _energy(plan: Plan) -> list[str]:
+def _energy(plan: PlannedRoute) -> list[str]:
     """What the route takes from the battery, where that is known."""
     totals, airframe, use = plan.totals, plan.request.airframe, plan.battery
     if airframe is None or use is None or totals.energy is None:
@@ -125,7 +125,7 @@ def _energy(plan: Plan) -> list[str]:
     ]
 
 
-def _strongest(plan: Plan) -> list[str]:
+def _strongest(plan: PlannedRoute) -> list[str]:
     """The strongest wind and gust met, where they have limits."""
     met, limits = plan.strongest, plan.request.limits
     if met is None:
@@ -141,12 +141,12 @@ def _strongest(plan: Plan) -> list[str]:
     return [f"strongest{where}: {', '.join(told)}{kept}"]
 
 
-def _last(plan: Plan) -> str:
+def _last(plan: PlannedRoute) -> str:
     """What comes after the route and counts."""
     return {"land": " and landing", "return": " and return", "hold": ""}[plan.request.finish]
 
 
-def _way_home(plan: Plan) -> list[str]:
+def _way_home(plan: PlannedRoute) -> list[str]:
     """How far home stays within reach, where that is known."""
     ways = plan.ways_home
     if ways is None:
@@ -173,7 +173,7 @@ def spread_clock(seconds: float) -> str:
     return clock(seconds) if seconds < float("inf") else "never"
 
 
-def _ends(plan: Plan) -> str:
+def _ends(plan: PlannedRoute) -> str:
     """What comes before and after the route."""
     takeoff = f"take-off {clock(plan.totals.takeoff_seconds)}"
     if plan.request.finish == "land":
@@ -183,7 +183,7 @@ def _ends(plan: Plan) -> str:
     return f"{takeoff} more"
 
 
-def print_comparison(plans: Sequence[Plan]) -> None:
+def print_comparison(plans: Sequence[PlannedRoute]) -> None:
     """Several plans of one request, a row each."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("least", justify="left", no_wrap=True)
@@ -212,7 +212,7 @@ def print_comparison(plans: Sequence[Plan]) -> None:
         console.print(f"hybrid weighs distance {hybrid.distance:g} and angle {hybrid.angle:g}", soft_wrap=True)
 
 
-def _gain(plans: Sequence[Plan]) -> list[str]:
+def _gain(plans: Sequence[PlannedRoute]) -> list[str]:
     """What least energy gains against the shortest way, and how high it flies in which wind."""
     by_name = {plan.choice.name: plan for plan in plans}
     shortest, thriftiest = by_name["distance"].totals.energy, by_name["energy"].totals.energy
@@ -225,7 +225,7 @@ def _gain(plans: Sequence[Plan]) -> list[str]:
     return [f"{line}; it flies {heights[0]:.0f} m above ground in head wind and {heights[1]:.0f} m in tail wind (mean)"]
 
 
-def mean_height(plan: Plan, sign: int) -> float | None:
+def mean_height(plan: PlannedRoute, sign: int) -> float | None:
     """The mean height above ground [m], by length, of the legs with the wind from behind (1) or from ahead (-1)."""
     legs = [leg for leg in plan.legs if leg.wind_along * sign > 0 and leg.distance > 0]
     total = sum(leg.distance for leg in legs)

@@ -1,6 +1,6 @@
 """Mission files of the ground stations: .waypoints and .plan, read patiently and written strictly."""
 
-from gcs_windplan.formats.any_format import read_mission
+from gcs_windplan.formats.any_format import read_items
 from gcs_windplan.formats.plan import format_plan, parse_plan, read_plan, write_plan
 from gcs_windplan.formats.reading import ReadMission
 from gcs_windplan.formats.waypoints import format_waypoints, parse_waypoints, read_waypoints, write_waypoints
@@ -13,7 +13,7 @@ __all__ = [
     "format_waypoints",
     "parse_plan",
     "parse_waypoints",
-    "read_mission",
+    "read_items",
     "read_plan",
     "read_waypoints",
     "write_atomically",

@@ -18,8 +18,17 @@ _READERS = {
 }
 
 
-def read_mission(path: str | os.PathLike[str]) -> ReadMission:
-    """Read a mission file by the ending of its name; raises FormatError for an ending unknown here."""
+def read_items(path: str | os.PathLike[str]) -> ReadMission:
+    """Read a mission file by the ending of its name; raises FormatError for an ending unknown here.
+
+    >>> import gcs_windplan as gw
+    >>> mission = gw.Mission(
+    ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
+    ... )
+    >>> file = gw.write(gw.plan(mission), "drawn.plan")
+    >>> gw.read_items(file).mission.autopilot
+    'ardupilot'
+    """
     file = Path(path)
     reader = _READERS.get(file.suffix.lower())
     if reader is None:

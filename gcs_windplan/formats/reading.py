@@ -18,6 +18,10 @@ class ReadMission:
     """A mission read from a file, and what had to be repaired or left out on the way, a sentence each.
 
     `left_out` are those of the repairs that left out parts of its fence or rally points.
+
+    >>> import gcs_windplan as gw
+    >>> gw.ReadMission(gw.MissionItems(())).repairs
+    ()
     """
 
     mission: MissionItems

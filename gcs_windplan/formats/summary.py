@@ -9,15 +9,15 @@ from gcs_windplan.planning.export import flown_duration
 
 if TYPE_CHECKING:
     from gcs_windplan.flight.flight import Waypoint
-    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.planner import PlannedRoute
 
 
-def format_summary(plan: Plan) -> str:
+def format_summary(plan: PlannedRoute) -> str:
     """The plan's figures as JSON."""
     return json_text(summary_of(plan)) + "\n"
 
 
-def summary_of(plan: Plan) -> dict[str, Any]:
+def summary_of(plan: PlannedRoute) -> dict[str, Any]:
     """The plan's figures: SI units, angles in degrees from true north, wind towards where it blows.
 
     None for what is not known, or infinite: the time of a member that cannot fly it, the energy of a way that is none.
@@ -51,7 +51,7 @@ def summary_of(plan: Plan) -> dict[str, Any]:
     }
 
 
-def _ensemble(plan: Plan) -> dict[str, Any] | None:
+def _ensemble(plan: PlannedRoute) -> dict[str, Any] | None:
     """How long the route takes over the members [s]; None where there is no ensemble."""
     if plan.spread is None:
         return None
@@ -62,13 +62,13 @@ def _ensemble(plan: Plan) -> dict[str, Any] | None:
     }
 
 
-def _as_flown(plan: Plan) -> dict[str, Any] | None:
+def _as_flown(plan: PlannedRoute) -> dict[str, Any] | None:
     """How long the autopilot takes en route and in all [s], corners and acceleration counted; None for a fixed-wing."""
     flown = flown_duration(plan)
     return None if flown is None else {"en_route_seconds": flown.en_route, "total_seconds": flown.total}
 
 
-def _battery(plan: Plan) -> dict[str, Any] | None:
+def _battery(plan: PlannedRoute) -> dict[str, Any] | None:
     """What the flight takes from the battery [J], and the share left at each waypoint; None without an airframe."""
     use = plan.battery
     if use is None:
@@ -76,7 +76,7 @@ def _battery(plan: Plan) -> dict[str, Any] | None:
     return {"total": use.total, "usable": use.usable, "allowed_with_reserve": use.allowed, "left": use.left}
 
 
-def _ways_home(plan: Plan) -> dict[str, Any] | None:
+def _ways_home(plan: PlannedRoute) -> dict[str, Any] | None:
     """What flying home, or to the nearest rally point, takes from each waypoint [J]; and where home comes out of reach
     with the reserve. None without an airframe."""
     ways = plan.ways_home

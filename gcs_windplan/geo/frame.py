@@ -24,7 +24,12 @@ _REACH = 1_000_000.0  # [m] beyond it the chord's series is worse than a decimet
 
 @dataclass(frozen=True, slots=True)
 class GeoPoint:
-    """A place on the WGS 84 ellipsoid, latitude and longitude in degrees."""
+    """A place on the WGS 84 ellipsoid, latitude and longitude in degrees.
+
+    >>> import gcs_windplan as gw
+    >>> print(gw.GeoPoint(46.81, 9.84))
+    46.8100000, 9.8400000
+    """
 
     latitude_deg: float
     longitude_deg: float
@@ -41,7 +46,13 @@ class GeoPoint:
 
 @dataclass(frozen=True, slots=True)
 class LocalFrame:
-    """East and north [m] about an origin (azimuthal equidistant, WGS 84)."""
+    """East and north [m] about an origin (azimuthal equidistant, WGS 84).
+
+    >>> import gcs_windplan as gw
+    >>> frame = gw.LocalFrame(gw.GeoPoint(46.81, 9.84))
+    >>> frame.to_local(46.82, 9.84).round().tolist()
+    [[0.0, 1112.0]]
+    """
 
     origin: GeoPoint
 

@@ -14,7 +14,7 @@ from gcs_windplan.jobs.mission import as_moment
 from gcs_windplan.jobs.missionfile.values import CLEARANCE, HEIGHT, Measure
 from gcs_windplan.jobs.places import Place, PlaceWords, as_place
 from gcs_windplan.jobs.terrains import TerrainWords
-from gcs_windplan.jobs.winds import Profile, WindWords
+from gcs_windplan.jobs.winds import WindProfile, WindWords
 from gcs_windplan.jobs.words import Naming, read_as
 from gcs_windplan.units import SHARE, SPEED
 
@@ -44,7 +44,7 @@ class Criteria:
 
     terrain: TerrainWords | None = None
     wind: WindWords | None = None
-    profile: Profile | str | None = None
+    profile: WindProfile | str | None = None
     extend: bool = False
     departure: datetime | str | None = None
     vehicle: Airframe | Path | str | None = None

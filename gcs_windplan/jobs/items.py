@@ -6,19 +6,19 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from gcs_windplan.formats import ReadMission, read_mission
+from gcs_windplan.formats import ReadMission, read_items
 from gcs_windplan.mission import MissionItems
 from gcs_windplan.progress import CancelToken, ProgressCallback
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.mission import Mission
-    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.planner import PlannedRoute
     from gcs_windplan.planning.request import Request
 
 MISSION_FILES: Final = (".yaml", ".yml")
 
 #: A ground station's file (.plan, .waypoints), a mission file (.yaml), a mission, a plan, or the items themselves.
-ItemsWords: TypeAlias = "str | os.PathLike[str] | Mission | Request | Plan | MissionItems"
+ItemsWords: TypeAlias = "str | os.PathLike[str] | Mission | Request | PlannedRoute | MissionItems"
 
 
 def is_mission_file(path: str | os.PathLike[str]) -> bool:
@@ -33,10 +33,10 @@ def items_of(
     if isinstance(words, MissionItems):
         return ReadMission(words)
     if isinstance(words, str | os.PathLike) and not is_mission_file(words):
-        return read_mission(words)
+        return read_items(words)
     from gcs_windplan.jobs.plans import plan
     from gcs_windplan.planning.export import mission_of
-    from gcs_windplan.planning.planner import Plan as PlannedRoute
+    from gcs_windplan.planning.planner import PlannedRoute
 
     if isinstance(words, PlannedRoute):
         return ReadMission(mission_of(words))

@@ -16,7 +16,7 @@ from gcs_windplan.jobs.obstacles import ObstacleFile
 from gcs_windplan.jobs.places import PlaceWords, as_place
 from gcs_windplan.jobs.terrains import TerrainWords, as_terrain
 from gcs_windplan.jobs.vehicles import VehicleWords, has_airframe
-from gcs_windplan.jobs.winds import Profile, WindWords, as_profile, as_wind
+from gcs_windplan.jobs.winds import WindProfile, WindWords, as_profile, as_wind
 from gcs_windplan.jobs.words import read_as
 from gcs_windplan.planning.cost import CostChoice
 from gcs_windplan.planning.request import Export, Finish, Limits, Order, Roadmap, Uniform
@@ -68,7 +68,7 @@ class Mission:
     via: Sequence[PlaceWords] = ()
     order: Order = "given"
     airspeed: float | Literal["free"] | str | None = None
-    profile: Profile | str | None = None
+    profile: WindProfile | str | None = None
     members: Literal["all"] | Sequence[int] | None = None
     extend: bool = False
     departure: datetime | str | None = None

@@ -16,7 +16,12 @@ _WITH_DATUM: Final = re.compile(r"(.*?)\s*\b(agl|amsl|asl|msl)\s*", re.IGNORECAS
 
 
 class LocalPoint(NamedTuple):
-    """A place in the local frame: `east` and `north` of its origin [m]."""
+    """A place in the local frame: `east` and `north` of its origin [m].
+
+    >>> import gcs_windplan as gw
+    >>> gw.LocalPoint(100.0, 250.0).north
+    250.0
+    """
 
     east: float
     north: float

@@ -17,7 +17,7 @@ from gcs_windplan.jobs.winds import DAY
 from gcs_windplan.planning import planner
 from gcs_windplan.planning.cost import COSTS, CostChoice
 from gcs_windplan.planning.request import Request
-from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
+from gcs_windplan.progress import UNTRACKED, CancelToken, ProgressCallback, Tracker
 
 if TYPE_CHECKING:
     from gcs_windplan.mission import MissionItems
@@ -28,7 +28,7 @@ MissionWords: TypeAlias = "Mission | Request | str | os.PathLike[str]"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Plan(planner.Plan):
+class Plan(planner.PlannedRoute):
     """A route for a mission, with its flight, its totals and what a pilot must know (`notes`).
 
     `waypoints`, `legs` and `totals` are those of the flight; `battery` and `ways_home` are known where the airframe is.
@@ -100,13 +100,13 @@ def plan(
     >>> gw.plan(mission)
     Plan('mission', time: 2 waypoints, 2.11 km in 2:56 min, clearance 48.0 m)
     """
-    step = Steps(progress, cancel)
-    request = as_request(mission, step)
+    tracker = Tracker(progress, cancel)
+    request = as_request(mission, tracker)
     choice = request.cost if cost is None else as_cost(cost)
     request = replace(request, cost=choice)
-    step("planning the route")
+    tracker.at("planning the route")
     found = planner.plan_route(request) if keep_reserve else planner.plan_routes(request, [choice])[0]
-    step.raise_if_cancelled()
+    tracker.at("done")
     return _public(found)
 
 
@@ -129,11 +129,11 @@ def compare(
     >>> [plan.choice.name for plan in gw.compare(mission)]
     ['distance', 'angle', 'hybrid', 'time']
     """
-    step = Steps(progress, cancel)
-    request = as_request(mission, step)
-    step("planning by each cost")
+    tracker = Tracker(progress, cancel)
+    request = as_request(mission, tracker)
+    tracker.at("planning by each cost")
     found = planner.plan_routes(request, _choices(request, costs))
-    step.raise_if_cancelled()
+    tracker.at("done")
     return [_public(one) for one in found]
 
 
@@ -164,29 +164,28 @@ def departures(
     """
     from gcs_windplan.jobs.moments import moments_of
 
-    step = Steps(progress, cancel)
+    tracker = Tracker(progress, cancel)
     if not isinstance(mission, Mission | Request):
         mission = read_mission(mission)
     moments = moments_of(first, last, every, as_moment(mission.departure))
     lasting = (moments[-1] - moments[0]).total_seconds() + DAY
-    return list(swept(as_request(mission, step, moments[0], lasting), moments, cores, step))
+    return list(swept(as_request(mission, tracker, moments[0], lasting), moments, cores, tracker))
 
 
 def swept(
-    request: Request, moments: Sequence[datetime], cores: int | None = None, step: Steps | None = None
+    request: Request, moments: Sequence[datetime], cores: int | None = None, tracker: Tracker = UNTRACKED
 ) -> Iterator[Departure]:
     """The best route at each departure, as they are found."""
     from gcs_windplan.planning.departures import sweep
 
-    step = step or Steps()
     for number, one in enumerate(sweep(request, moments, cores=cores), start=1):
-        step("departures", number, len(moments))
+        tracker.at("departures", number, len(moments))
         yield one
 
 
 def as_request(
     mission: MissionWords,
-    step: Steps | None = None,
+    tracker: Tracker = UNTRACKED,
     departure: datetime | None = None,
     lasting: float = DAY,
 ) -> Request:
@@ -195,29 +194,8 @@ def as_request(
         return mission
     if not isinstance(mission, Mission):
         mission = read_mission(mission)
-    if step is not None:
-        step("reading terrain and wind")
+    tracker.at("reading terrain and wind")
     return request_of(mission, departure, lasting)
-
-
-class Steps:
-    """Reports the stages of a job, and stops it where it is told to."""
-
-    __slots__ = ("cancel", "progress")
-
-    def __init__(self, progress: ProgressCallback | None = None, cancel: CancelToken | None = None) -> None:
-        self.progress, self.cancel = progress, cancel
-
-    def __call__(self, stage: str, done: int = 0, total: int | None = None) -> None:
-        """A stage begins, or a step of it is done. Raises `CancelledError`."""
-        self.raise_if_cancelled()
-        if self.progress is not None:
-            self.progress(Progress(stage, done, total))
-
-    def raise_if_cancelled(self) -> None:
-        """Raise `CancelledError` if the job is to stop."""
-        if self.cancel is not None:
-            self.cancel.raise_if_cancelled()
 
 
 def _choices(request: Request, costs: Sequence[CostChoice | str] | None) -> list[CostChoice]:
@@ -228,6 +206,6 @@ def _choices(request: Request, costs: Sequence[CostChoice | str] | None) -> list
     return [one if isinstance(one, CostChoice) else own if one == "hybrid" else CostChoice(one) for one in costs]
 
 
-def _public(found: planner.Plan) -> Plan:
+def _public(found: planner.PlannedRoute) -> Plan:
     """The planner's route with what notebooks and scripts want of it."""
     return Plan(**{field.name: getattr(found, field.name) for field in fields(found)})

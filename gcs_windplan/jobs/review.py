@@ -11,24 +11,22 @@ from pathlib import Path
 from gcs_windplan.assessment import Assessment, Case, assess
 from gcs_windplan.assessment.planned import case_of
 from gcs_windplan.errors import InputError, Problem
-from gcs_windplan.formats import ReadMission
-from gcs_windplan.formats import read_mission as read_items
+from gcs_windplan.formats import ReadMission, read_items
 from gcs_windplan.jobs.cases import case_by_criteria
 from gcs_windplan.jobs.criteria import Criteria
 from gcs_windplan.jobs.items import ItemsWords, file_of, is_mission_file
 from gcs_windplan.jobs.mission import Mission
 from gcs_windplan.jobs.missionfile import read_mission
 from gcs_windplan.jobs.places import PlaceWords
-from gcs_windplan.jobs.plans import Steps
 from gcs_windplan.jobs.requests import request_of
 from gcs_windplan.jobs.sources import software, source, sources_of_mission
 from gcs_windplan.jobs.terrains import TerrainWords
-from gcs_windplan.jobs.winds import Profile, WindWords
+from gcs_windplan.jobs.winds import WindProfile, WindWords
 from gcs_windplan.mission import MissionItems
 from gcs_windplan.planning import planner
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.request import Request
-from gcs_windplan.progress import CancelToken, ProgressCallback
+from gcs_windplan.progress import CancelToken, ProgressCallback, Tracker
 from gcs_windplan.vehicle import Airframe, Autopilot, VehicleType
 
 
@@ -38,7 +36,7 @@ def review(
     by: Mission | str | os.PathLike[str] | None = None,
     terrain: TerrainWords | None = None,
     wind: WindWords | None = None,
-    profile: Profile | str | None = None,
+    profile: WindProfile | str | None = None,
     extend: bool = False,
     departure: datetime | str | None = None,
     vehicle: Airframe | Path | str | None = None,
@@ -105,19 +103,19 @@ def judge(
     cancel: CancelToken | None = None,
 ) -> list[Assessment]:
     """Missions judged; one that is drawn in the world of `by`, of the first that is planned, or of the criteria."""
-    step = Steps(progress, cancel)
+    tracker = Tracker(progress, cancel)
     read = [_read(words) for words in missions]
     world = _read(by) if by is not None else next((one for one in read if isinstance(one, Mission)), None)
     found = []
     for words, one in zip(missions, read, strict=True):
-        case = _case(one, words, world, criteria, step)
-        step("judging")
+        case = _case(one, words, world, criteria, tracker)
+        tracker.at("judging")
         found.append(assess(replace(case, sources=(*case.sources, software()))))
-    step.raise_if_cancelled()
+    tracker.at("done")
     return found
 
 
-def _read(words: ItemsWords) -> Mission | Request | planner.Plan | ReadMission:
+def _read(words: ItemsWords) -> Mission | Request | planner.PlannedRoute | ReadMission:
     """The mission to be planned, the plan, or the items that words say."""
     if isinstance(words, MissionItems):
         return ReadMission(words)
@@ -127,46 +125,48 @@ def _read(words: ItemsWords) -> Mission | Request | planner.Plan | ReadMission:
 
 
 def _case(
-    one: Mission | Request | planner.Plan | ReadMission,
+    one: Mission | Request | planner.PlannedRoute | ReadMission,
     words: ItemsWords,
     world: object,
     criteria: Criteria,
-    step: Steps,
+    tracker: Tracker,
 ) -> Case:
     """What is judged, with what it is judged by."""
     file = file_of(words)
     if isinstance(one, ReadMission):
-        return _drawn(one, file, world, criteria, step)
-    return _planned(one, file, criteria, step)
+        return _drawn(one, file, world, criteria, tracker)
+    return _planned(one, file, criteria, tracker)
 
 
-def _planned(mission: Mission | Request | planner.Plan, file: Path | None, criteria: Criteria, step: Steps) -> Case:
+def _planned(
+    mission: Mission | Request | planner.PlannedRoute, file: Path | None, criteria: Criteria, tracker: Tracker
+) -> Case:
     """The mission that planning comes to, in its own world."""
     _refuse_two_worlds(file or "a mission to be planned", criteria)
     sources = []
-    if isinstance(mission, planner.Plan):
+    if isinstance(mission, planner.PlannedRoute):
         plan = mission
     else:
         if isinstance(mission, Mission):
-            step("reading terrain and wind")
+            tracker.at("reading terrain and wind")
             request = request_of(mission, criteria.moment)
             sources = list(sources_of_mission(mission, request.wind.name))
         else:
             request = mission
-        step("planning the route")
+        tracker.at("planning the route")
         plan = planner.plan_routes(request, [request.cost])[0]
     case = case_of(plan.request, mission_of(plan), sources)
     return criteria.with_home(replace(case, remarks=plan.notes, limits=criteria.limits_with(case.limits)))
 
 
-def _drawn(read: ReadMission, file: Path | None, world: object, criteria: Criteria, step: Steps) -> Case:
+def _drawn(read: ReadMission, file: Path | None, world: object, criteria: Criteria, tracker: Tracker) -> Case:
     """The mission of a ground station's file."""
     if not read.mission.items:
         raise InputError(Problem("holds no items: there is nothing to judge", file=file))
     name = "mission" if file is None else file.stem
     said = tuple(f"{name if file is None else file.name}: {repair}" for repair in read.repairs)
     own = () if file is None else (source("mission", file, f"{len(read.mission.items)} items"),)
-    step("reading terrain and wind")
+    tracker.at("reading terrain and wind")
     if isinstance(world, Mission):
         case = _in_world(world, criteria)
         items = replace(read.mission, autopilot=case.autopilot, vehicle_type=case.vehicle_type)

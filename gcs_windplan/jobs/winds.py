@@ -35,10 +35,14 @@ _ROUGHNESS: Final = Measure(LENGTH, above=0, at_most=_REFERENCE / 2)
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class WindProfile:
     """How the wind changes with height above ground: a law with its own figure (exponent, or roughness length [m]).
 
     The wind is as given at `reference_height` [m].
+
+    >>> import gcs_windplan as gw
+    >>> gw.WindProfile("power", 0.143).reference_height
+    10.0
     """
 
     law: Literal["power", "log"]
@@ -79,7 +83,7 @@ class WindSource(Protocol):
     def files(self) -> tuple[Path, ...]:
         """The files that it is read from."""
 
-    def load(self, where: Surroundings, profile: Profile | None) -> LoadedWind:
+    def load(self, where: Surroundings, profile: WindProfile | None) -> LoadedWind:
         """The wind there. Raises `WindError`."""
 
 
@@ -90,7 +94,7 @@ class GivenWind:
     field: WindField
     files: tuple[Path, ...] = ()
 
-    def load(self, where: Surroundings, profile: Profile | None) -> LoadedWind:
+    def load(self, where: Surroundings, profile: WindProfile | None) -> LoadedWind:
         """The wind itself, or with a profile over the ground."""
         return LoadedWind(_over_ground(self.field, where, profile))
 
@@ -107,7 +111,7 @@ class SameWind:
         """The wind in a local frame; without one its north is true north."""
         return air.ConstantWind.from_direction(self.speed, self.from_deg, frame)
 
-    def load(self, where: Surroundings, profile: Profile | None) -> LoadedWind:
+    def load(self, where: Surroundings, profile: WindProfile | None) -> LoadedWind:
         """The wind, or with a profile over the ground."""
         return LoadedWind(_over_ground(self.field(where.frame), where, profile))
 
@@ -120,12 +124,12 @@ class ForecastFiles:
     members: Literal["all"] | tuple[int, ...] | None = None
     extend: bool = False
 
-    def load(self, where: Surroundings, profile: Profile | None) -> LoadedWind:
+    def load(self, where: Surroundings, profile: WindProfile | None) -> LoadedWind:
         """The winds of the files."""
         forecast = self.read(where, profile)
         return LoadedWind(forecast.mean, forecast.fields if len(forecast.fields) > 1 else (), forecast.gusts)
 
-    def read(self, where: Surroundings, profile: Profile | None) -> Forecast:
+    def read(self, where: Surroundings, profile: WindProfile | None) -> Forecast:
         """The forecast in the files. Raises `WindError`."""
         area, edge = where.area, where.terrain.extent
         query = air.ForecastQuery(
@@ -174,19 +178,19 @@ def as_wind(
     return ForecastFiles(tuple(map(Path, names)), chosen, extend)
 
 
-def as_profile(words: Profile | str | None) -> Profile | None:
+def as_profile(words: WindProfile | str | None) -> WindProfile | None:
     """The profile that words say: `power:0.143`, `log:0.1`. Raises `ValueError`."""
-    if words is None or isinstance(words, Profile):
+    if words is None or isinstance(words, WindProfile):
         return words
     named = _LAWS.fullmatch(words)
     if named is None:
         raise ValueError(f"{words!r} is no law: write power:EXPONENT or log:ROUGHNESS, power:0.143")
     if named[1] == "power":
-        return Profile("power", _EXPONENT.read(named[2]))
-    return Profile("log", _ROUGHNESS.read(named[2]))
+        return WindProfile("power", _EXPONENT.read(named[2]))
+    return WindProfile("log", _ROUGHNESS.read(named[2]))
 
 
-def _over_ground(field: WindField, where: Surroundings, profile: Profile | None) -> WindField:
+def _over_ground(field: WindField, where: Surroundings, profile: WindProfile | None) -> WindField:
     if profile is None:
         return field
     return air.ProfileWind(field, where.terrain.heights_at, profile.function, where.terrain.resolution)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from gcs_windplan.assessment import Assessment
 from gcs_windplan.errors import FormatError, Problem
 from gcs_windplan.formats import check_writable, format_plan, format_waypoints, write_atomically
 from gcs_windplan.jobs.items import items_of
 from gcs_windplan.mission import MissionItems
-from gcs_windplan.planning.planner import Plan as PlannedRoute
-
-if TYPE_CHECKING:
-    from gcs_windplan.jobs.plans import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 
 #: What can be written.
-Written: TypeAlias = "Plan | MissionItems | Assessment"
+Written: TypeAlias = PlannedRoute | MissionItems | Assessment
 
 
 def write(what: Written, path: str | os.PathLike[str]) -> Path:

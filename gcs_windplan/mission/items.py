@@ -23,7 +23,12 @@ def degrees_e7(degrees: float) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """Where the vehicle is armed; `altitude` AMSL [m]."""
+    """Where the vehicle is armed; `altitude` AMSL [m].
+
+    >>> import gcs_windplan as gw
+    >>> gw.Home(gw.GeoPoint(46.81, 9.84), 1560.0).altitude
+    1560.0
+    """
 
     point: GeoPoint
     altitude: float
@@ -41,6 +46,10 @@ class MissionItem:
     the vehicle"). For a command without a place `latitude_deg`, `longitude_deg` and `altitude` are its
     parameters 5 to 7. DO_JUMP's first parameter counts items from 1, home being 0, as in files and on
     ArduPilot; PX4 counts one less.
+
+    >>> import gcs_windplan as gw
+    >>> gw.MissionItem(3, 16, latitude_deg=46.81, longitude_deg=9.84, altitude=60.0).has_place  # a waypoint above home
+    True
     """
 
     frame: int

@@ -36,6 +36,11 @@ class Departure:
     many members as the request's `robust` asks for, or not with the battery; `brief` the same in a few words. `wind`
     and `gust` are the strongest along the route in any member [m/s]; the gust is None where the forecast tells none.
     `worked` is the processor's time that it took [s]. `robust` is the request's quantile.
+
+    >>> import gcs_windplan as gw
+    >>> from datetime import datetime, timezone
+    >>> gw.Departure(datetime(2026, 5, 1, 8, tzinfo=timezone.utc), seconds=1134.0).feasible
+    True
     """
 
     moment: datetime

@@ -20,7 +20,7 @@ from gcs_windplan.planning.sites import choose_layers, site_points
 if TYPE_CHECKING:
     from gcs_windplan.arrays import FloatArray
     from gcs_windplan.geo.frame import LocalFrame
-    from gcs_windplan.planning.planner import Plan
+    from gcs_windplan.planning.planner import PlannedRoute
     from gcs_windplan.planning.request import Request, Site
 
 _SLOWEST = 0.01  # [m/s] no slower ground speed is commanded
@@ -29,7 +29,7 @@ _FASTEST = 1000.0  # [m/s] no limit
 _LEVEL = 1.0  # [m] a leg shorter than this in plan is a climb or descent on the spot
 
 
-def flown_duration(plan: Plan) -> MissionDuration | None:
+def flown_duration(plan: PlannedRoute) -> MissionDuration | None:
     """How long the autopilot takes for a plan, corners and acceleration counted; None for a fixed-wing.
 
     The plan's ground speeds are commanded, so that its wind is in them already; no lean angle holds the vehicle back.
@@ -40,7 +40,7 @@ def flown_duration(plan: Plan) -> MissionDuration | None:
     return duration_of(mission_of(plan), pace=pace)
 
 
-def mission_of(plan: Plan) -> MissionItems:
+def mission_of(plan: PlannedRoute) -> MissionItems:
     """The mission that flies a plan: home on the ground under its first waypoint, speeds as planned.
 
     A leg straight up or down commands no speed; a fixed-wing is told airspeeds. Fence and rally points of the request

@@ -44,7 +44,7 @@ class Effort:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Plan:
+class PlannedRoute:
     """A route for a request: the polyline, its flight, and what it cost to find.
 
     `cost` is the route's cost by the chosen measure, `graph_cost` that of the graph's path before shaping; `spread` is
@@ -82,7 +82,7 @@ class Plan:
 
     def __repr__(self) -> str:
         return (
-            f"Plan({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
+            f"{type(self).__name__}({self.request.name!r}, {self.choice}: {len(self.waypoints)} waypoints,"
             f" {self.totals.length / 1000:.2f} km in {clock(self.totals.seconds)} min,"
             f" clearance {self.totals.clearance:.1f} m)"
         )
@@ -90,7 +90,7 @@ class Plan:
 
 def plan_route(
     request: Request, *, progress: ProgressCallback | None = None, cancel: CancelToken | None = None
-) -> Plan:
+) -> PlannedRoute:
     """Plan the request's route by its own cost.
 
     `progress` is called between the steps, and `cancel` is looked at: then `CancelledError` is raised.
@@ -108,7 +108,7 @@ def plan_route(
     return plan
 
 
-def refuse_unsafe(plan: Plan) -> None:
+def refuse_unsafe(plan: PlannedRoute) -> None:
     """Raise `BatteryError` for a plan that its battery does not carry through, or not home."""
     check_reserve(plan.battery)
     wanted = plan.request.limits.way_home
@@ -122,7 +122,7 @@ def plan_routes(
     *,
     progress: ProgressCallback | None = None,
     cancel: CancelToken | None = None,
-) -> list[Plan]:
+) -> list[PlannedRoute]:
     """Plan the request's route once for each cost, on one and the same veil; no battery is too small for it."""
     problem = pose_problem(request, progress=progress, cancel=cancel)
     return [solve(problem, choice, progress=progress, cancel=cancel) for choice in choices]
@@ -135,7 +135,7 @@ def solve(
     *,
     progress: ProgressCallback | None = None,
     cancel: CancelToken | None = None,
-) -> Plan:
+) -> PlannedRoute:
     """Plan a route that begins at `begin` [s after the request's departure]. Raises as `plan_route` does.
 
     By `time` with airspeeds that are free it is the quickest that the battery allows.
@@ -146,7 +146,7 @@ def solve(
     return replace(plan, notes=(*notes, *plan.notes))
 
 
-def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> Plan:
+def _quickest(problem: PlanningProblem, choice: CostChoice, begin: float, tracker: Tracker) -> PlannedRoute:
     """The plan, its sites in order; by `time` with free airspeeds the quickest that the battery allows."""
     weighs_time = math.isinf(choice.leg_cost.value_of_time(math.inf))
     if not weighs_time or not problem.request.free_airspeed or problem.request.airframe is None:
@@ -171,7 +171,7 @@ def _planned(
     *,
     cost_index: float = math.inf,
     shaping: Callable[..., FloatArray] = shape,
-) -> Plan:
+) -> PlannedRoute:
     """The plan for one cost index.
 
     Over an ensemble the best route for the quantile of its legs' cost need not be the best for the quantile of the
@@ -204,7 +204,9 @@ def _planned(
     if problem.graph.limits:
         strongest = strongest_along(request, found.points, begin, found.airspeeds)
         strongest.check_limits(request.limits, request.robust)
-    return Plan(request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest)
+    return PlannedRoute(
+        request, choice, flight, found.cost, found.graph_cost, effort, spread, battery, ways, notes, strongest
+    )
 
 
 def _home_again(problem: PlanningProblem, flight: Flight, begin: float) -> float:

@@ -56,7 +56,12 @@ class FenceArea:
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """A uniform grid; without a spacing [m] a 120th of the area's longer side."""
+    """A uniform grid; without a spacing [m] a 120th of the area's longer side.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Uniform(spacing=50.0).neighbours
+    16
+    """
 
     spacing: float | None = None
     neighbours: int = 16
@@ -64,7 +69,12 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True)
 class Roadmap:
-    """A probabilistic roadmap; without a number of nodes three quarters of the uniform grid's."""
+    """A probabilistic roadmap; without a number of nodes three quarters of the uniform grid's.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Roadmap(nodes=2000).seed
+    1
+    """
 
     nodes: int | None = None
     seed: int = 1
@@ -73,7 +83,12 @@ class Roadmap:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """How the route becomes mission items: speed commands, altitudes above home or above sea level, which files."""
+    """How the route becomes mission items: speed commands, altitudes above home or above sea level, which files.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Export(altitude="amsl").speed_changes
+    True
+    """
 
     speed_changes: bool = True
     altitude: AltitudeReference = "relative"
@@ -88,6 +103,10 @@ class Limits:
     `wind` and `gust` [m/s] are the largest anywhere along the route. On landing must be left `battery`, a share of the
     capacity, and `reserve_seconds` of level flight at the vehicle's airspeed. `way_home`: whether home or a rally point
     must be within the battery's reach from every waypoint; None: only where the vehicle returns at the end.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Limits(wind=10.0, battery=0.3).gust is None
+    True
     """
 
     wind: float | None = None

@@ -9,7 +9,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment.outlines import outline_of
 from gcs_windplan.flight import clock
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.planner import PlannedRoute
 from gcs_windplan.planning.sites import choose_area
 from gcs_windplan.report import map as maps
 from gcs_windplan.report import profile as profiles
@@ -25,7 +25,7 @@ _SAME_PLACE = 0.1  # [m]
 _MARKERS = {"start": "^", "goal": "s"}
 
 
-def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
+def draw_map(plans: Sequence[PlannedRoute], dpi: int = 120) -> bytes:
     """One or several routes of one request on a map, as PNG.
 
     A single route is coloured by its ground speed; several are told apart by colour and dash.
@@ -47,7 +47,7 @@ def draw_map(plans: Sequence[Plan], dpi: int = 120) -> bytes:
     return maps.draw_view(view, dpi)
 
 
-def draw_profile(plan: Plan, dpi: int = 120) -> bytes:
+def draw_profile(plan: PlannedRoute, dpi: int = 120) -> bytes:
     """Ground, clearance, height limit and route over the distance flown; below it ground speed and wind, as PNG."""
     request, totals = plan.request, plan.totals
     flown = np.concatenate([[0.0], np.cumsum([leg.distance for leg in plan.legs])])
@@ -65,13 +65,13 @@ def draw_profile(plan: Plan, dpi: int = 120) -> bytes:
     return profiles.draw_view(view, dpi)
 
 
-def _route(plan: Plan) -> MapRoute:
+def _route(plan: PlannedRoute) -> MapRoute:
     line = np.array([(w.east, w.north) for w in plan.waypoints])
     name = f"{plan.choice}: {clock(plan.totals.seconds)} min"
     return MapRoute(name, line, np.array([leg.ground_speed for leg in plan.legs]))
 
 
-def _stops(plan: Plan) -> list[MapPlace]:
+def _stops(plan: PlannedRoute) -> list[MapPlace]:
     """The waypoints with their numbers, but for those at the sites, which have names."""
     sites = np.array([(site.east, site.north) for site in plan.request.sites])
     return [
@@ -81,14 +81,14 @@ def _stops(plan: Plan) -> list[MapPlace]:
     ]
 
 
-def _ground(plan: Plan, extent: Extent) -> Ground:
+def _ground(plan: PlannedRoute, extent: Extent) -> Ground:
     """The terrain in an extent."""
     x, y = maps.grid(extent, _PIXELS)
     heights = plan.request.terrain.heights_at(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
     return Ground(extent.west, extent.south, extent.east, extent.north, heights)
 
 
-def _wind(plan: Plan, extent: Extent) -> WindArrows:
+def _wind(plan: PlannedRoute, extent: Extent) -> WindArrows:
     """The wind at the route's mean height above ground, where it need be known."""
     request = plan.request
     places = _arrow_places(plan, extent)
@@ -105,7 +105,7 @@ def _wind(plan: Plan, extent: Extent) -> WindArrows:
     return WindArrows(points[known, :2], wind[known, :2], where, _ARROWS)
 
 
-def _arrow_places(plan: Plan, extent: Extent) -> FloatArray:
+def _arrow_places(plan: PlannedRoute, extent: Extent) -> FloatArray:
     """Places (n, 2) inside of the map and of the area planned in: the wind need not be known beyond it."""
     sites = np.array([(site.east, site.north) for site in plan.request.sites])
     planned = choose_area(plan.request, sites)
@@ -125,7 +125,7 @@ def _name(field: str) -> str:
     return field.replace("via.", "via ")
 
 
-def _title(plans: Sequence[Plan]) -> str:
+def _title(plans: Sequence[PlannedRoute]) -> str:
     plan = plans[0]
     what = f"least {plan.choice}, {plan.totals.length / 1000:.2f} km in {clock(plan.totals.seconds)} min"
     head = what if len(plans) == 1 else "routes of least " + ", ".join(p.choice.name for p in plans)

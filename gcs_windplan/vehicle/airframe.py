@@ -15,7 +15,12 @@ from gcs_windplan.vehicle.vehicle import Vehicle
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """A battery: its capacity [J], and how much of it a flight may take."""
+    """A battery: its capacity [J], and how much of it a flight may take.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Battery(capacity=100 * 3600.0).energy_to_plan_with / 3600  # [Wh] 80 % of 100, and of that 80 %
+    64.0
+    """
 
     capacity: float  # [J] from full to empty
     usable: float = 0.8  # share of the capacity that may be drawn at all
@@ -45,6 +50,11 @@ class Airframe:
     """A vehicle that is known well enough to plan its energy.
 
     `vehicle` holds its speeds, of which its airspeed is the cruise; `acceleration` [m/s²] is level, along the track.
+
+    >>> import gcs_windplan as gw
+    >>> copter = gw.read_airframe("missions/vehicles/large_multirotor.yaml")
+    >>> copter.mass == copter.power.mass
+    True
     """
 
     name: str

@@ -21,6 +21,10 @@ class Vehicle:
 
     `airspeed`, `climb` and `descent` in m/s, all positive. `speed_model` is `triangle`, the exact wind triangle, or
     `paper`, equation (12): ground speed = airspeed + wind · cos φ, the cross wind countered for free.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Vehicle(18.0, type="fixed-wing").hovers
+    False
     """
 
     airspeed: float

@@ -76,7 +76,7 @@ def scipy_interpolation(kind: str) -> Measured:
 
 def changing_plan(spacing: str) -> Measured:
     """A whole plan, shaping too, in the control member of the 3-hourly forecast, kernels warm."""
-    import gcs_windplan as gw
+    from gcs_windplan.planning.planner import plan_route
     from gcs_windplan.planning.request import Uniform
 
     request = _across(FRONT)
@@ -84,11 +84,11 @@ def changing_plan(spacing: str) -> Measured:
         request, airframe=None, wind=request.members[0], members=(), robust=0.5, layers=(50.0, 80.0, 110.0),
         graph=Uniform(float(spacing), 16),
     )  # fmt: skip
-    gw.plan_route(replace(control, graph=Uniform(400.0, 16)))
+    plan_route(replace(control, graph=Uniform(400.0, 16)))
     effort = []
 
     def work() -> dict[str, float]:
-        plan = gw.plan_route(control)
+        plan = plan_route(control)
         effort.append(plan.effort)
         return {
             "nodes": plan.effort.nodes, "expanded": plan.effort.expanded, "veil": plan.effort.veil_seconds,

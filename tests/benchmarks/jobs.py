@@ -119,8 +119,8 @@ def networkx_dijkstra(n: str, neighbours: str, way: str) -> Measured:
 
 def plan(nodes: str, neighbours: str) -> Measured:
     """All of planning but shaping, over real ground in a gridded wind: veil with exact clearance, winds, search."""
-    import gcs_windplan as gw
     from gcs_windplan.jobs.requests import read_request
+    from gcs_windplan.planning.planner import plan_route
     from gcs_windplan.planning.request import Uniform
 
     request = read_request(MISSION)
@@ -128,10 +128,8 @@ def plan(nodes: str, neighbours: str) -> Measured:
     spacing = ((box.east - box.west) * (box.north - box.south) / float(nodes)) ** 0.5
     coarse = replace(request, layers=(50.0,), margin=40_000.0, graph=Uniform(150.0, int(neighbours)))
     fine = replace(coarse, graph=Uniform(spacing, int(neighbours)))
-    gw.plan_route(coarse)
-    best = min(
-        (gw.plan_route(fine) for _ in range(3)), key=lambda it: it.effort.veil_seconds + it.effort.search_seconds
-    )
+    plan_route(coarse)
+    best = min((plan_route(fine) for _ in range(3)), key=lambda it: it.effort.veil_seconds + it.effort.search_seconds)
     effort = best.effort
     answer = {"nodes": effort.nodes, "expanded": effort.expanded, "search": effort.search_seconds}
     return replace(timed(dict, list, 1), seconds=effort.veil_seconds + effort.search_seconds, answer=answer)

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from gcs_windplan.cli.app import app
-from gcs_windplan.formats import read_mission, write_plan, write_waypoints
+from gcs_windplan.formats import read_items, write_plan, write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
 
@@ -139,7 +139,7 @@ def test_every_file_of_the_corpus_ends_in_a_verdict(path: Path):
         done = check(path, "--autopilot", "ardupilot", *options)
         if isinstance(done.exception, FormatError):
             with pytest.raises(FormatError):
-                read_mission(path)
+                read_items(path)
         else:
             assert done.exit_code in (0, 1)
             assert f"{path.name} for Ardu" in done.stdout

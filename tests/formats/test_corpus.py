@@ -15,7 +15,7 @@ from gcs_windplan.formats import (
     format_waypoints,
     parse_plan,
     parse_waypoints,
-    read_mission,
+    read_items,
     read_plan,
     read_waypoints,
 )
@@ -54,7 +54,7 @@ def name(path: Path) -> str:
 
 
 @pytest.mark.parametrize("path", FILES, ids=name)
-@pytest.mark.parametrize("reader", [read_mission, read_plan, read_waypoints])
+@pytest.mark.parametrize("reader", [read_items, read_plan, read_waypoints])
 def test_every_reader_reads_or_refuses_every_file(path: Path, reader: Callable[[Path], Any]) -> None:
     try:
         assert isinstance(reader(path).mission, MissionItems)
@@ -67,10 +67,10 @@ def test_every_reader_reads_or_refuses_every_file(path: Path, reader: Callable[[
 def test_only_what_cannot_be_read_is_refused(path: Path) -> None:
     reason = REFUSED.get(path.name)
     if reason is None:
-        assert read_mission(path).mission.items or "geofence" in path.name
+        assert read_items(path).mission.items or "geofence" in path.name
     else:
         with pytest.raises(FormatError, match=reason):
-            read_mission(path)
+            read_items(path)
 
 
 @pytest.mark.parametrize("path", [path for path in SHEETS if path.name not in REFUSED], ids=name)
@@ -112,7 +112,7 @@ def assert_equal(items: tuple[MissionItem, ...], theirs: list[Any]) -> None:
 
 @pytest.mark.parametrize("path", [path for path in SHEETS + PLANS if path.name not in REFUSED], ids=name)
 def test_what_was_read_can_be_written_and_read_again(path: Path) -> None:
-    mission = read_mission(path).mission
+    mission = read_items(path).mission
     if mission.home is None:
         with pytest.raises(FormatError, match="has none"):
             format_plan(mission)

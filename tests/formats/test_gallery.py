@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
 from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Command, MissionItems, fence_items, rally_items
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.planning.export import mission_of
+from gcs_windplan.planning.planner import PlannedRoute, plan_route
 from tests.oracles.fences import breaches
 
 MISSIONS = sorted((Path(__file__).resolve().parents[2] / "missions").glob("*.yaml"))
@@ -25,8 +25,8 @@ one_millimetre = 1e-3
 
 
 @cache
-def planned(path: Path) -> Plan:
-    return gw.plan_route(read_request(path))
+def planned(path: Path) -> PlannedRoute:
+    return plan_route(read_request(path))
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
@@ -55,7 +55,7 @@ class TestGallery:
         """Each leg is flown at the ground speed last commanded before it, or within 0.1 m/s of it."""
         plan = planned(path)
         commanded, flown = None, []
-        for item in gw.mission_of(plan).items:
+        for item in mission_of(plan).items:
             if item.command == Command.DO_CHANGE_SPEED:
                 assert item.params[0] == 1  # SPEED_TYPE_GROUNDSPEED
                 commanded = item.params[1]
@@ -67,7 +67,7 @@ class TestGallery:
 
     def test_altitudes_and_places_are_the_plans(self, path: Path):
         plan = planned(path)
-        mission = gw.mission_of(plan)
+        mission = mission_of(plan)
         assert mission.home is not None
         route = [item for item in mission.items if item.command == Command.NAV_WAYPOINT]
         for item, waypoint in zip(route, plan.waypoints[1:], strict=True):
@@ -83,7 +83,7 @@ class TestGallery:
     def test_files_are_read_alike_by_everyone(
         self, path: Path, tmp_path: Path, mavwp_load: Callable[[Path], list[Any]], mission_raw: Any
     ):
-        mission = gw.mission_of(planned(path))
+        mission = mission_of(planned(path))
         sheet, plan = tmp_path / "m.waypoints", tmp_path / "m.plan"
         write_waypoints(mission.without_fence(), sheet)
         write_plan(mission, plan)
@@ -110,7 +110,7 @@ class TestGallery:
 def test_a_route_keeps_to_its_own_fence(path: Path):
     """Along every leg and at the rally points, as the autopilots themselves test the uploaded items."""
     plan = planned(path)
-    mission = gw.mission_of(plan)
+    mission = mission_of(plan)
     fence = fence_items(mission.fence)
     assert fence
     points = np.array([(w.east, w.north) for w in plan.waypoints])
@@ -151,13 +151,13 @@ def test_the_gallery_is_whole():
         "front",
         "rounds",
     }
-    assert isinstance(gw.mission_of(planned(MISSIONS[0])), MissionItems)
+    assert isinstance(mission_of(planned(MISSIONS[0])), MissionItems)
 
 
 def test_a_mission_of_the_gallery_has_a_fence_and_rally_points():
     """Areas with `fence: true` and no other; rally points at whole metres above home, not below what was planned."""
     plan = planned(next(path for path in MISSIONS if path.stem == "keep_out"))
-    mission = gw.mission_of(plan)
+    mission = mission_of(plan)
     assert mission.fence is not None
     assert [(len(p.corners), p.inclusion) for p in mission.fence.polygons] == [(5, False), (4, True)]
     assert [(c.radius, c.inclusion) for c in mission.fence.circles] == [(350.0, False)]

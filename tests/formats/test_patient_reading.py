@@ -17,7 +17,7 @@ from gcs_windplan.formats import (
     format_waypoints,
     parse_plan,
     parse_waypoints,
-    read_mission,
+    read_items,
     read_waypoints,
 )
 from gcs_windplan.mission import Command
@@ -285,19 +285,19 @@ def test_a_plan_that_cannot_be_read_is_refused_with_the_place(text: str, message
 
 def test_files_that_cannot_be_opened_or_are_binary_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=r"gone\.plan: cannot be read \(no such file"):
-        read_mission(tmp_path / "gone.plan")
+        read_items(tmp_path / "gone.plan")
     with pytest.raises(FormatError, match="cannot be read"):
         read_waypoints(tmp_path)
     utf16 = tmp_path / "wide.waypoints"
     utf16.write_text(CLEAN, encoding="utf-16")
     with pytest.raises(FormatError, match="zero bytes"):
-        read_mission(utf16)
+        read_items(utf16)
     with pytest.raises(FormatError, match=r"ends in none of \.plan, \.waypoints"):
-        read_mission(tmp_path / "mission.kml")
+        read_items(tmp_path / "mission.kml")
 
 
 def test_a_comment_in_latin_1_does_no_harm(tmp_path: Path) -> None:
     path = tmp_path / "swiss.waypoints"
     path.write_bytes(CLEAN.replace(HOME_ROW, "# Jakobshörnli\n" + HOME_ROW).encode("latin-1"))
-    read = read_mission(path)
+    read = read_items(path)
     assert read.repairs == ("the file is not UTF-8; it was read as Latin-1", "line 2: comment dropped")

@@ -17,7 +17,7 @@ from gcs_windplan.formats import (
     format_waypoints,
     parse_plan,
     parse_waypoints,
-    read_mission,
+    read_items,
     write_plan,
     write_waypoints,
 )
@@ -56,7 +56,7 @@ def test_plans_come_back_with_their_vehicle(mission: MissionItems) -> None:
 def test_files_are_stable_when_read_and_written_again(mission, write, ending, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     first, second = tmp_path / f"first.{ending}", tmp_path / f"second.{ending}"
     write(mission, first)
-    read = read_mission(first)
+    read = read_items(first)
     write(read.mission, second)
     assert read.repairs == ()
     assert first.read_bytes() == second.read_bytes()

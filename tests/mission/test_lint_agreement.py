@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.errors import FormatError, InputError
-from gcs_windplan.formats import read_mission
+from gcs_windplan.formats import read_items
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.wire import item_to_message
 from gcs_windplan.mission import Command, Frame, Home, MissionItem, MissionItems, takes_place
@@ -239,7 +239,7 @@ FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file()) if CORPUS.i
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_missions_of_the_wild_get_a_verdict_that_the_stand_in_shares(path, autopilot):
     try:
-        mission = read_mission(path).mission
+        mission = read_items(path).mission
     except FormatError:
         pytest.skip("no mission that can be read")
     for kind in ("fixed-wing", None, "multicopter"):

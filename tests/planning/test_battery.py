@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import gcs_windplan as gw
 from gcs_windplan.assessment import assess_plan
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import BatteryError
@@ -16,6 +15,7 @@ from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.battery import Allowance, BatteryUse, allowances_of, check_reserve
 from gcs_windplan.planning.export import flown_duration
+from gcs_windplan.planning.planner import plan_route, plan_routes
 from gcs_windplan.planning.request import Limits
 from gcs_windplan.wind import Calm
 from tests.ensembles import divided, request
@@ -33,7 +33,7 @@ def smaller(airframe, joules: float):
 
 
 def test_what_is_left_falls_from_waypoint_to_waypoint(airframe):
-    plan = gw.plan_route(request(wind=Calm(), airframe=airframe))
+    plan = plan_route(request(wind=Calm(), airframe=airframe))
     use = plan.battery
     takeoff, en_route, landing = as_flown(plan)
     assert use.total == pytest.approx(takeoff + en_route + landing)
@@ -41,14 +41,14 @@ def test_what_is_left_falls_from_waypoint_to_waypoint(airframe):
     assert use.left[-1] == pytest.approx(1 - (takeoff + en_route) / airframe.battery.capacity)
     assert list(use.left) == sorted(use.left, reverse=True)
     assert use.missing == 0
-    returning = gw.plan_route(request(wind=Calm(), airframe=airframe, finish="hold"))
+    returning = plan_route(request(wind=Calm(), airframe=airframe, finish="hold"))
     assert returning.battery.total == pytest.approx(use.total - landing)
 
 
 @pytest.mark.parametrize("name", ["shear", "rounds", "front"])
 def test_the_review_of_the_mission_that_is_written_finds_the_same(gallery, name):
     """Two ways to the battery's end: the plan's legs made longer, and the mission's items flown sample by sample."""
-    plan = gw.plan_route(read_request(gallery / f"{name}.yaml"))
+    plan = plan_route(read_request(gallery / f"{name}.yaml"))
     review = assess_plan(plan)
     end = plan.totals.takeoff_energy + plan.totals.landing_energy + plan.totals.energy
     assert review.totals.energy > 1.01 * end
@@ -66,14 +66,14 @@ def as_flown(plan) -> tuple[float, float, float]:
 def test_a_mission_that_breaks_the_reserve_is_refused_and_says_by_how_much(airframe):
     """1.8 km take about 36 Wh with both ends: of 45 Wh 36 are usable, and 28.8 with the reserve."""
     asked = request(wind=Calm(), airframe=airframe)
-    total = gw.plan_route(asked).battery.total
+    total = plan_route(asked).battery.total
     weak = replace(asked, airframe=smaller(airframe, total / 0.8 * 1.01))
     with pytest.raises(BatteryError) as error:
-        gw.plan_route(weak)
+        plan_route(weak)
     missing = (total - total * 1.01 * 0.8) / 3600
     assert f"breaks the reserve by {missing:.0f} Wh" in str(error.value)
-    assert gw.plan_routes(weak, [weak.cost])[0].battery.missing == pytest.approx(missing * 3600)
-    gw.plan_route(replace(asked, airframe=smaller(airframe, total / 0.64 * 1.01)))
+    assert plan_routes(weak, [weak.cost])[0].battery.missing == pytest.approx(missing * 3600)
+    plan_route(replace(asked, airframe=smaller(airframe, total / 0.64 * 1.01)))
 
 
 @dataclass(frozen=True)
@@ -125,17 +125,17 @@ def test_the_strictest_rule_counts_and_all_that_are_broken_are_named():
 
 def test_a_plan_keeps_the_limits_of_its_battery(airframe):
     asked = request(wind=Calm(), airframe=airframe)
-    use = gw.plan_route(asked).battery
+    use = plan_route(asked).battery
     share = use.total / airframe.battery.capacity
-    gw.plan_route(replace(asked, limits=Limits(battery=1 - share - 1e-6)))
+    plan_route(replace(asked, limits=Limits(battery=1 - share - 1e-6)))
     with pytest.raises(BatteryError, match=r"limits\.battery"):
-        gw.plan_route(replace(asked, limits=Limits(battery=1 - share + 1e-6)))
+        plan_route(replace(asked, limits=Limits(battery=1 - share + 1e-6)))
     with pytest.raises(BatteryError, match=r"breaks limits\.reserve \(30 min at \d+ W\) by"):
-        gw.plan_route(replace(asked, limits=Limits(reserve_seconds=1800.0)))
+        plan_route(replace(asked, limits=Limits(reserve_seconds=1800.0)))
 
 
 def test_over_an_ensemble_the_member_at_the_quantile_counts(airframe):
-    plan = gw.plan_route(replace(divided(0.5), airframe=airframe))
+    plan = plan_route(replace(divided(0.5), airframe=airframe))
     robust = plan.request.airframe.battery
     takeoff, en_route, landing = as_flown(plan)
     longer = en_route / plan.totals.energy

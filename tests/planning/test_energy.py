@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.flight import fly, fly_legs
 from gcs_windplan.flight.energy import leg_energies
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.vehicle import Multirotor, Vehicle, air_density
 from gcs_windplan.wind import Calm, ConstantWind
 from tests.ensembles import FRAME, Everywhere, divided
@@ -102,7 +102,7 @@ def test_a_flight_carries_the_energy_of_its_legs_and_ends():
 
 def test_the_spread_over_members_holds_their_energies(gallery):
     airframe = read_airframe(gallery / "vehicles" / "small_quadcopter.yaml")
-    plan = gw.plan_route(replace(divided(0.5), airframe=airframe))
+    plan = plan_route(replace(divided(0.5), airframe=airframe))
     points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
     vehicle = plan.request.vehicle
     each = [

@@ -11,17 +11,18 @@ import pytest
 import gcs_windplan as gw
 from gcs_windplan.flight import fly_legs
 from gcs_windplan.planning.ensemble import Spread
+from gcs_windplan.planning.planner import PlannedRoute, plan_route
 from tests.ensembles import Corridor, Everywhere, Gate, divided, request
 
 
-def seconds_in(plan: gw.Plan, wind) -> float:
+def seconds_in(plan: PlannedRoute, wind) -> float:
     points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
     return float(fly_legs(points, wind, plan.request.vehicle)[1][-1])
 
 
 def test_the_robust_route_is_better_at_its_quantile_than_the_median_one():
     """The median route takes the corridor, which three of ten members close; the robust one stays out of it."""
-    median, robust = gw.plan_route(divided(0.5)), gw.plan_route(divided(0.9))
+    median, robust = plan_route(divided(0.5)), plan_route(divided(0.9))
     assert max(w.north for w in median.waypoints) > 200.0
     assert max(w.north for w in robust.waypoints) < 150.0
     assert median.spread.at(0.5) < 0.85 * robust.spread.at(0.5)
@@ -29,7 +30,7 @@ def test_the_robust_route_is_better_at_its_quantile_than_the_median_one():
 
 
 def test_the_spread_is_the_same_route_flown_in_every_member():
-    plan = gw.plan_route(divided(0.5))
+    plan = plan_route(divided(0.5))
     each = [seconds_in(plan, member) for member in plan.request.members]
     assert plan.spread.seconds == pytest.approx(each, rel=1e-9)
     assert plan.spread.at(0.5) == pytest.approx(sorted(each)[4])
@@ -44,21 +45,21 @@ def test_members_that_cannot_fly_it_come_last():
 
 
 def test_without_an_ensemble_there_is_no_spread():
-    assert gw.plan_route(replace(divided(), members=())).spread is None
+    assert plan_route(replace(divided(), members=())).spread is None
 
 
 def test_where_waiting_pays_a_note_says_so():
     """The gale in the way ends after the flight would reach it: flying around takes longer than waiting."""
-    plan = gw.plan_route(request(wind=Gate(opens=90.0), margin=1300.0))
+    plan = plan_route(request(wind=Gate(opens=90.0), margin=1300.0))
     (note,) = [note for note in plan.notes if "waiting pays" in note]
     assert "arrives" in note
-    open_way = gw.plan_route(request(wind=Gate(opens=1.0)))
+    open_way = plan_route(request(wind=Gate(opens=1.0)))
     assert not [note for note in open_way.notes if "waiting pays" in note]
 
 
 def test_where_no_way_is_open_the_error_says_when_one_will_be():
     with pytest.raises(gw.NoRouteError, match=r"leaving \d+ min later"):
-        gw.plan_route(request(wind=Gate(opens=1800.0)))
+        plan_route(request(wind=Gate(opens=1800.0)))
 
 
 def test_a_route_that_too_few_members_can_fly_is_refused():
@@ -66,7 +67,7 @@ def test_a_route_that_too_few_members_can_fly_is_refused():
     calm, gale = Corridor(2.0), Everywhere(-20.0)
     members = (calm,) * 7 + (gale,) * 3
     asked = replace(divided(0.7), members=members, wind=calm)
-    plan = gw.plan_route(asked)
+    plan = plan_route(asked)
     assert plan.spread.unflyable == 3
     with pytest.raises(gw.NoRouteError, match=r"no route|members only"):
-        gw.plan_route(replace(asked, robust=0.9))
+        plan_route(replace(asked, robust=0.9))

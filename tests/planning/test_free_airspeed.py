@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.errors import BatteryError, MissionFileError, RequestError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Command
 from gcs_windplan.planning.budget import quickest_within
 from gcs_windplan.planning.cost import CostChoice
+from gcs_windplan.planning.export import mission_of
+from gcs_windplan.planning.planner import plan_route, plan_routes
 from gcs_windplan.planning.route import _merge_short_legs
 from gcs_windplan.scene import Clearance
 from gcs_windplan.vehicle import air_density
@@ -29,7 +30,7 @@ def asked(gallery):
 
 @pytest.fixture(scope="module")
 def plans(asked):
-    return dict(zip(("time", "energy"), gw.plan_routes(asked, [CostChoice("time"), CostChoice("energy")]), strict=True))
+    return dict(zip(("time", "energy"), plan_routes(asked, [CostChoice("time"), CostChoice("energy")]), strict=True))
 
 
 def test_it_is_faster_in_head_wind_and_slower_in_tail_wind_and_low_and_high(plans):
@@ -52,7 +53,7 @@ def test_no_held_airspeed_takes_less(asked, plans):
     held = []
     for airspeed in (13.0, 15.0, 18.0):
         request = replace(asked, free_airspeed=False, vehicle=replace(asked.vehicle, airspeed=airspeed))
-        held.append(gw.plan_routes(request, [CostChoice("energy")])[0].totals.energy)
+        held.append(plan_routes(request, [CostChoice("energy")])[0].totals.energy)
     assert plans["energy"].totals.energy < min(held) * 0.999
     assert plans["energy"].totals.seconds > plans["time"].totals.seconds
 
@@ -62,11 +63,11 @@ def test_least_time_uses_what_the_battery_gives(asked, plans):
     fast, thrifty = plans["time"], plans["energy"]
     assert {leg.airspeed for leg in fast.legs} == {asked.airframe.maximum_airspeed}
     between = (fast.battery.total + 2 * thrifty.battery.total) / 3
-    plan = gw.plan_route(replace(with_battery(asked, between), cost=CostChoice("time")))
+    plan = plan_route(replace(with_battery(asked, between), cost=CostChoice("time")))
     assert 0.975 * between < plan.battery.total <= between
     assert fast.totals.seconds < plan.totals.seconds < thrifty.totals.seconds
     with pytest.raises(BatteryError, match="breaks the reserve"):
-        gw.plan_route(replace(with_battery(asked, 0.97 * thrifty.battery.total), cost=CostChoice("time")))
+        plan_route(replace(with_battery(asked, 0.97 * thrifty.battery.total), cost=CostChoice("time")))
 
 
 def test_quickest_within_on_a_curve():
@@ -85,7 +86,7 @@ def test_quickest_within_on_a_curve():
 
 
 def test_the_mission_commands_each_legs_ground_speed(plans):
-    items = gw.mission_of(plans["energy"]).items
+    items = mission_of(plans["energy"]).items
     speeds = [item.params[1] for item in items if item.command == Command.DO_CHANGE_SPEED]
     assert len(speeds) > 10
     ground = [leg.ground_speed for leg in plans["energy"].legs]
@@ -103,10 +104,10 @@ def test_free_without_an_airframe_is_told_with_its_line(tmp_path, gallery):
 def test_energy_without_an_airframe_is_told(gallery):
     asked = read_request(gallery / "village.yaml")
     with pytest.raises(RequestError, match="energy asks for the vehicle's power"):
-        gw.plan_route(replace(asked, cost=CostChoice("energy")))
+        plan_route(replace(asked, cost=CostChoice("energy")))
     shear = read_request(gallery / "shear.yaml")
     with pytest.raises(RequestError, match="the paper's speed model has no airspeed"):
-        gw.plan_route(replace(shear, vehicle=replace(shear.vehicle, speed_model="paper")))
+        plan_route(replace(shear, vehicle=replace(shear.vehicle, speed_model="paper")))
 
 
 def test_a_wing_keeps_away_from_its_stall(gallery):

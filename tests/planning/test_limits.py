@@ -20,6 +20,7 @@ from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.cost import COSTS
 from gcs_windplan.planning.departures import sweep
 from gcs_windplan.planning.limits import strongest_along
+from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
 from gcs_windplan.wind import ConstantWind, PowerLaw, ProfileWind
 from gcs_windplan.wind.field import Steady
@@ -64,8 +65,8 @@ def met(plan, fields=None, samples=4000):
 
 def test_a_route_stays_out_of_the_wind_that_is_too_strong():
     asked = request(wind=Corridor(6.0))
-    free = gw.plan_route(asked)
-    bound = gw.plan_route(replace(asked, limits=Limits(wind=4.0)))
+    free = plan_route(asked)
+    bound = plan_route(replace(asked, limits=Limits(wind=4.0)))
     assert met(free) > 5.9
     assert free.strongest is None
     assert 3.5 < met(bound) <= 4.0
@@ -79,8 +80,8 @@ def test_a_route_stays_out_of_the_wind_that_is_too_strong():
 def test_a_curtain_between_the_nodes_is_passed_through_its_gap(graph, cost):
     vehicle = gw.Vehicle(14.0)
     asked = request(wind=Curtain(), vehicle=vehicle, graph=graph, cost=gw.CostChoice(cost))
-    assert met(gw.plan_route(asked)) > 10.0
-    bound = gw.plan_route(replace(asked, limits=Limits(wind=10.0)))
+    assert met(plan_route(asked)) > 10.0
+    bound = plan_route(replace(asked, limits=Limits(wind=10.0)))
     assert met(bound) <= 10.0
     assert bound.totals.distance > 1850.0
 
@@ -89,7 +90,7 @@ def test_a_curtain_between_the_nodes_is_passed_through_its_gap(graph, cost):
 def test_a_curtain_without_a_gap_leaves_no_route_and_the_limit_is_the_reason(graph):
     asked = request(wind=Curtain(gap=-5.0), vehicle=gw.Vehicle(14.0), graph=graph, limits=Limits(wind=10.0))
     with pytest.raises(NoRouteError, match=r"cut by wind limit \(limits\.wind, 10 m/s\): \d+ legs.* A higher limit"):
-        gw.plan_route(asked)
+        plan_route(asked)
 
 
 def test_wind_that_grows_with_height_is_a_ceiling():
@@ -97,8 +98,8 @@ def test_wind_that_grows_with_height_is_a_ceiling():
     dem = rough_dem(1, size=1500.0, relief=40.0)
     wind = ProfileWind(ConstantWind.from_direction(5.0, 270.0), dem.heights_at, PowerLaw(10.0, 0.25), 60.0)
     asked = request(terrain=dem, wind=wind, layers=(30.0, 40.0, 60.0, 90.0))
-    assert gw.plan_route(asked).totals.height > 100.0
-    bound = gw.plan_route(replace(asked, limits=Limits(wind=7.5)))
+    assert plan_route(asked).totals.height > 100.0
+    bound = plan_route(replace(asked, limits=Limits(wind=7.5)))
     assert 45.0 < bound.totals.height <= 10.0 * (7.5 / 5.0) ** 4
     assert met(bound) <= 7.5
 
@@ -111,7 +112,7 @@ def test_what_is_planned_keeps_the_limit(seed, limit, graph):
         limits=Limits(wind=limit), vehicle=gw.Vehicle(14.0),
     )  # fmt: skip
     try:
-        plan = gw.plan_route(asked)
+        plan = plan_route(asked)
     except (NoRouteError, RequestError) as error:
         assert "wind" in str(error)  # noqa: PT017
     else:
@@ -121,21 +122,21 @@ def test_what_is_planned_keeps_the_limit(seed, limit, graph):
 def test_a_site_in_too_strong_a_wind_is_an_error_at_once():
     north = Site("goal", 900.0, 600.0)
     with pytest.raises(RequestError) as caught:
-        gw.plan_route(request(wind=Corridor(6.0), goal=north, limits=Limits(wind=4.0)))
+        plan_route(request(wind=Corridor(6.0), goal=north, limits=Limits(wind=4.0)))
     (problem,) = caught.value.problems
     assert problem.field == "goal"
     assert problem.message.startswith("the wind there is 6.00 m/s or more, too much for limits.wind, 4 m/s: another")
     with pytest.raises(RequestError) as caught:
-        gw.plan_route(request(wind=Everywhere(6.0), limits=Limits(wind=4.0)))
+        plan_route(request(wind=Everywhere(6.0), limits=Limits(wind=4.0)))
     assert [problem.field for problem in caught.value.problems] == ["start", "goal"]
 
 
 def test_what_opens_later_is_said():
     """For half an hour a wall of wind stands across the way, which the vehicle could fly through."""
     asked = request(wind=Gate(1800.0), vehicle=gw.Vehicle(35.0), limits=Limits(wind=10.0))
-    gw.plan_route(replace(asked, limits=Limits()))
+    plan_route(replace(asked, limits=Limits()))
     with pytest.raises(NoRouteError, match=r"wind limit \(limits\.wind, 10 m/s\).* when leaving 40 min later"):
-        gw.plan_route(asked)
+        plan_route(asked)
 
 
 def test_a_limit_is_looked_at_between_the_forecasts_times():
@@ -165,34 +166,34 @@ def test_a_limit_is_looked_at_between_the_forecasts_times():
 def test_members_that_break_the_limit_count_as_ones_that_cannot_fly():
     """Three of ten members blow 7 m/s, against a limit of 6.5; seven 6."""
     asked = replace(divided(0.5), limits=Limits(wind=6.5))
-    plan = gw.plan_route(asked)
+    plan = plan_route(asked)
     assert plan.spread.unflyable in (0, 3)  # they are closed in the corridor only
     assert plan.strongest.within_limits(asked.limits) == 10 - plan.spread.unflyable
     assert met(plan, asked.members[:1]) <= 6.5
-    robust = gw.plan_route(replace(asked, robust=0.9))
+    robust = plan_route(replace(asked, robust=0.9))
     assert robust.strongest.within_limits(asked.limits) >= 9
     with pytest.raises(RequestError, match=r"limits\.wind"):
-        gw.plan_route(replace(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
+        plan_route(replace(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
 
 
 def test_gusts_are_limited_where_the_forecast_tells_them():
     asked = request(wind=Corridor(6.0), gusts=(Corridor(9.0),), limits=Limits(gust=6.0))
-    assert gw.plan_route(replace(asked, limits=Limits(wind=7.0))).strongest.gust > 8.8
-    bound = gw.plan_route(asked)
+    assert plan_route(replace(asked, limits=Limits(wind=7.0))).strongest.gust > 8.8
+    bound = plan_route(asked)
     assert met(bound, asked.gusts) <= 6.0
     assert bound.strongest.gust == pytest.approx(met(bound, asked.gusts), abs=0.01)
     with pytest.raises(RequestError) as caught:
-        gw.plan_route(replace(asked, gusts=()))
+        plan_route(replace(asked, gusts=()))
     (problem,) = caught.value.problems
     assert problem.field == "limits.gust"
     assert problem.message.startswith("the forecast has no gusts (corridor): leave the limit out")
     with pytest.raises(RequestError, match=r"the gusts there are 9\.00 m/s or more, too much for limits\.gust, 6 m/s"):
-        gw.plan_route(replace(asked, goal=Site("goal", 900.0, 600.0)))
+        plan_route(replace(asked, goal=Site("goal", 900.0, 600.0)))
 
 
 def test_the_strongest_wind_is_that_of_a_naive_look():
     asked = request(wind=WavyWind(5, strength=6.0), limits=Limits(wind=12.0))
-    plan = gw.plan_route(asked)
+    plan = plan_route(asked)
     points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
     strongest = strongest_along(asked, points)
     assert strongest.winds.shape == (1, len(plan.legs))
@@ -217,11 +218,11 @@ def test_gusts_of_a_file(gallery, tmp_path):
         path.write_text(text)
         return read_request(path)
 
-    plan = gw.plan_route(written("front", "{max_height: 120 m, wind: 9 m/s, gust: 10 m/s}"))
+    plan = plan_route(written("front", "{max_height: 120 m, wind: 9 m/s, gust: 10 m/s}"))
     assert 8.0 < plan.strongest.gust <= 10.0
     assert plan.strongest.winds.shape == plan.strongest.gusts.shape == (10, len(plan.legs))
     (line,) = [line for line in summary_lines(plan) if line.startswith("strongest")]
     assert re.search(r"in any of the 10 members: wind \d\.\d m/s \(limits\.wind 9 m/s\), gust \d+\.\d m/s", line)
     assert line.endswith("10 of 10 keep the limits")
     with pytest.raises(RequestError, match=r"jacksboro\.yaml:\d+:\d+: limits\.gust: the forecast has no gusts"):
-        gw.plan_route(written("jacksboro", "{max_height: 120 m, gust: 10 m/s}"))
+        plan_route(written("jacksboro", "{max_height: 120 m, gust: 10 m/s}"))

@@ -14,6 +14,7 @@ import gcs_windplan as gw
 from gcs_windplan.errors import NoRouteError, RequestError
 from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.order import Costs, best_order, optimise_order
+from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.planning.problem import pose_problem
 from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
 from gcs_windplan.planning.route import find_route, unshaped
@@ -173,7 +174,7 @@ def test_in_changing_wind_the_order_is_no_worse_than_any():
 def test_the_plan_flies_the_order_and_says_what_it_saves():
     places = vias((500.0, 0.0), (-500.0, 100.0), (0.0, -100.0))
     asked = request(wind=Calm(), via=places, order="free")
-    plan, given = gw.plan_route(asked), gw.plan_route(replace(asked, order="given"))
+    plan, given = plan_route(asked), plan_route(replace(asked, order="given"))
     assert [via.field for via in plan.request.via] == ["via.1", "via.2", "via.0"]
     passed = [(w.east, w.north) for w in plan.waypoints]
     assert [passed.index((via.east, via.north)) for via in plan.request.via] == [1, 2, 3]
@@ -186,12 +187,12 @@ def test_the_plan_flies_the_order_and_says_what_it_saves():
 
 
 def plan_again(plan):
-    return gw.plan_route(plan.request)
+    return plan_route(plan.request)
 
 
 def test_one_via_needs_no_order():
     asked = request(wind=Calm(), via=vias((0.0, 300.0)), order="free")
-    assert gw.plan_route(asked).notes == ()
+    assert plan_route(asked).notes == ()
 
 
 def test_over_an_ensemble_the_mean_counts():
@@ -221,7 +222,7 @@ def test_a_via_behind_a_gale_is_named(strength, way):
         wind=Ring(strength), via=vias((-300.0, 0.0), (300.0, 300.0), (0.0, -300.0)), order="free", graph=Uniform(50.0)
     )
     with pytest.raises(NoRouteError, match=rf"^via\.1: cannot be {way} on any way: no route: .* cut by wind"):
-        gw.plan_route(asked)
+        plan_route(asked)
 
 
 def test_a_via_that_an_area_closes_in_is_named():
@@ -230,7 +231,7 @@ def test_a_via_that_an_area_closes_in_is_named():
         wind=Calm(), via=vias((300.0, 300.0), (-300.0, 0.0)), order="free", airspace=Airspace(keep_out=tuple(walls))
     )
     with pytest.raises(NoRouteError, match=r"^via\.0: cannot be reached on any way: .*keep-out or keep-in area"):
-        gw.plan_route(asked)
+        plan_route(asked)
 
 
 def _walls(low: float, high: float, thick: float) -> list[np.ndarray]:
@@ -246,9 +247,9 @@ def _walls(low: float, high: float, thick: float) -> list[np.ndarray]:
 
 def test_limits_hold_while_the_order_is_sought():
     asked = request(wind=Gate(1800.0), via=vias((400.0, 100.0), (-400.0, 0.0)), order="free", vehicle=gw.Vehicle(35.0))
-    assert [via.field for via in gw.plan_route(asked).request.via] == ["via.1", "via.0"]
+    assert [via.field for via in plan_route(asked).request.via] == ["via.1", "via.0"]
     with pytest.raises(NoRouteError, match="wind limit"):
-        gw.plan_route(replace(asked, limits=Limits(wind=10.0)))
+        plan_route(replace(asked, limits=Limits(wind=10.0)))
 
 
 def test_more_than_twelve_are_refused_and_twelve_are_put_in_order():
@@ -257,13 +258,13 @@ def test_more_than_twelve_are_refused_and_twelve_are_put_in_order():
     asked = request(wind=Calm(), via=vias(*((east[i], 0.0) for i in shuffled)), order="free", graph=Uniform(120.0, 8))
     assert chosen(asked) == [shuffled.index(i) for i in range(12)]
     with pytest.raises(RequestError, match=r"order: 13 vias are more than the 12 that can be put in order"):
-        gw.plan_route(replace(asked, via=(*asked.via, Site("via.12", 0.0, 500.0))))
+        plan_route(replace(asked, via=(*asked.via, Site("via.12", 0.0, 500.0))))
 
 
 def test_places_that_come_twice_are_refused():
     asked = request(wind=Calm(), via=vias((0.0, 0.0), (500.0, 0.0), (0.0, 0.0), (900.0, 0.0)), order="free")
     with pytest.raises(RequestError) as caught:
-        gw.plan_route(asked)
+        plan_route(asked)
     assert [(problem.field, problem.message.split(":")[0]) for problem in caught.value.problems] == [
         ("via.2", "is the same place as via.0"),
         ("via.3", "is the same place as goal"),

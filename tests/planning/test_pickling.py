@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.errors import Problem
-from gcs_windplan.planning.planner import Plan
+from gcs_windplan.jobs.requests import read_request
+from gcs_windplan.planning.planner import Plan, plan_route
 from gcs_windplan.planning.request import Request
 from gcs_windplan.wind import ConstantWind
 from tests.ensembles import request
@@ -41,15 +41,15 @@ def answers(asked: Request) -> list:
 
 @pytest.mark.parametrize("path", GALLERY, ids=lambda path: path.stem)
 def test_a_missions_request_is_the_same_after_a_round_trip(path):
-    asked = gw.read_mission(path)
+    asked = read_request(path)
     assert answers(pickle.loads(pickle.dumps(asked))) == answers(asked)
 
 
 def test_another_process_plans_the_same_route_and_hands_it_back(gallery):
-    asked = gw.read_mission(gallery / "keep_out.yaml")
+    asked = read_request(gallery / "keep_out.yaml")
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        there = pool.submit(gw.plan_route, asked).result()
-    here = gw.plan_route(asked)
+        there = pool.submit(plan_route, asked).result()
+    here = plan_route(asked)
     assert corners(there) == corners(here)
     assert there.totals == here.totals
     assert there.battery == here.battery

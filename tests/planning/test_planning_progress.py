@@ -7,9 +7,9 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.errors import CancelledError
 from gcs_windplan.planning.departures import sweep
+from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.planning.request import Site, Uniform
 from gcs_windplan.progress import CancelToken, Progress
 from tests.ensembles import Corridor, request
@@ -25,7 +25,7 @@ STAGES = (
 
 def test_every_stage_is_told_in_turn_and_counted():
     told: list[Progress] = []
-    gw.plan_route(replace(ASKED, order="free"), progress=told.append)
+    plan_route(replace(ASKED, order="free"), progress=told.append)
     assert tuple(dict.fromkeys(one.stage for one in told)) == STAGES
     assert all(one.total is None or 0 <= one.done < one.total for one in told)
     assert [one.done for one in told if one.stage == "ordering the vias"] == list(range(7))
@@ -43,7 +43,7 @@ def test_it_stops_at_the_next_step(stage):
             token.cancel()
 
     with pytest.raises(CancelledError):
-        gw.plan_route(replace(ASKED, order="free"), progress=listen, cancel=token)
+        plan_route(replace(ASKED, order="free"), progress=listen, cancel=token)
     assert not after
 
 

@@ -183,7 +183,12 @@ class AirframeModel(Section):
 
 
 def read_airframe(path: Path | str) -> Airframe:
-    """The airframe in a file; raises `MissionFileError` with every problem, by file, line and column."""
+    """The airframe in a file; raises `MissionFileError` with every problem, by file, line and column.
+
+    >>> import gcs_windplan as gw
+    >>> gw.read_airframe("missions/vehicles/fixed_wing.yaml").vehicle.type
+    'fixed-wing'
+    """
     file = Path(path)
     try:
         if file.stat().st_size > _LARGEST_FILE:

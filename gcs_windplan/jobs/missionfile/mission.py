@@ -19,7 +19,7 @@ from gcs_windplan.jobs.obstacles import ObstacleFile
 from gcs_windplan.jobs.places import LocalPoint, Place
 from gcs_windplan.jobs.terrains import DemFiles, Hills, MeshFile, SampleDem, TerrainSource
 from gcs_windplan.jobs.vehicles import AirframeFile
-from gcs_windplan.jobs.winds import ForecastFiles, GivenWind, Profile, SameWind, WindSource
+from gcs_windplan.jobs.winds import ForecastFiles, GivenWind, SameWind, WindProfile, WindSource
 from gcs_windplan.paper.fields import Diverging, Jet, Rotation
 from gcs_windplan.paper.sampled import SampledTest
 from gcs_windplan.planning.cost import CostChoice
@@ -149,14 +149,14 @@ def _paper(model: PaperWindModel) -> WindField:
     return (Diverging if model.field == "diverging" else Rotation)(model.speed, model.scale)
 
 
-def _profile(document: MissionDocument) -> Profile | None:
+def _profile(document: MissionDocument) -> WindProfile | None:
     """The profile's law; the schema has seen to it that its own figure is there."""
     model = document.model.wind.profile
     if model is None:
         return None
     figure = model.exponent if model.law == "power" else model.roughness
     assert figure is not None
-    return Profile(model.law, figure, model.reference_height)
+    return WindProfile(model.law, figure, model.reference_height)
 
 
 def area_of(model: AreaModel) -> Area:

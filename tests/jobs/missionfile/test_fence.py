@@ -22,6 +22,7 @@ from gcs_windplan.jobs.missionfile.mission import area_of
 from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Fence, FenceCircle, FencePolygon, Frame, fence_items
 from gcs_windplan.planning.export import mission_of
+from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.planning.request import FenceArea, Request, Site, Uniform
 from gcs_windplan.scene import Airspace, Prism
 from gcs_windplan.terrain import Dem
@@ -58,7 +59,7 @@ def asked(folder: Path, **fields: str | None) -> Request:
 
 def refusals(folder: Path, **fields: str | None) -> list[str]:
     with pytest.raises(RequestError) as caught:
-        gw.plan_route(asked(folder, **fields))
+        plan_route(asked(folder, **fields))
     return [str(problem).removeprefix(f"{folder / 'm.yaml'}:") for problem in caught.value.problems]
 
 
@@ -85,7 +86,7 @@ def test_the_mission_carries_fence_return_point_and_rally_points(tmp_path: Path)
         fence="{return_point: {east: -600, north: -600, height: 45}}",
         rally="[{latitude: 47.0012345, longitude: 8.9976543}, {east: 400, north: 500, altitude: 655.5}]",
     )
-    mission = mission_of(gw.plan_route(request))
+    mission = mission_of(plan_route(request))
     assert mission.home is not None
     assert mission.home.altitude == pytest.approx(600.0)
     assert mission.fence is not None
@@ -109,20 +110,20 @@ def test_px4_keeps_fractions_of_a_metre(tmp_path: Path) -> None:
     request = asked(
         tmp_path, vehicle="{airspeed: 12, autopilot: px4}", rally="[{east: 400, north: 500, altitude: 655.5}]"
     )
-    (rally,) = mission_of(gw.plan_route(request)).rally
+    (rally,) = mission_of(plan_route(request)).rally
     assert rally.altitude == pytest.approx(55.5)
 
 
 def test_without_marks_there_is_no_fence(tmp_path: Path) -> None:
     request = asked(tmp_path, limits=f"{{keep_in: [{{name: field, polygon: {SQUARE}}}]}}")
     assert (request.fence, request.rally, request.fence_return) == ((), (), None)
-    mission = mission_of(gw.plan_route(request))
+    mission = mission_of(plan_route(request))
     assert (mission.fence, mission.rally) == (None, ())
 
 
 def test_a_keep_in_with_heights_is_held_in_plan_and_the_pilot_is_told(tmp_path: Path) -> None:
     request = asked(tmp_path, limits=areas(keep_in=f"[{{name: field, polygon: {SQUARE}, ceiling: 900, fence: true}}]"))
-    plan = gw.plan_route(request)
+    plan = plan_route(request)
     (note,) = plan.notes
     assert note == (
         "the fence holds 'field' in plan only, without floor and ceiling: set the vehicle's own limits of altitude."
@@ -176,7 +177,7 @@ def test_the_return_point_lies_inside_the_fence_too(tmp_path: Path) -> None:
 def test_a_fixed_wing_circles_over_its_rally_point_and_does_not_land(tmp_path: Path) -> None:
     wires = "[{name: wires, circle: {east: -300, north: 0, radius: 50}, ceiling: 630}]"
     plane = {"vehicle": "{airspeed: 12, type: fixed-wing}", "limits": areas(wires), "finish": "hold"}
-    plan = gw.plan_route(asked(tmp_path, **plane, rally="[{east: -300, north: 0, height: 60}]"))
+    plan = plan_route(asked(tmp_path, **plane, rally="[{east: -300, north: 0, height: 60}]"))
     assert len(mission_of(plan).rally) == 1
 
 
@@ -184,7 +185,7 @@ def test_the_flight_back_to_a_rally_point_is_looked_at_too(tmp_path: Path) -> No
     wall = "[{name: wall, polygon: {east_north: [[0, 200], [850, 200], [850, 260], [0, 260]]}}]"
     fields = {"limits": areas(wall), "finish": "return", "start": "{east: -700, north: 700}"}
     good = asked(tmp_path, **fields, rally="[{east: -600, north: 600}]")
-    notes = gw.plan_route(good).notes
+    notes = plan_route(good).notes
     assert "at the end the vehicle returns to the rally point nearest to it, or home if that is nearer." in notes
     (found,) = refusals(tmp_path, **fields, rally="[{east: -600, north: 600}, {east: 500, north: 0}]")
     text = "the straight flight from the goal to it breaks 'wall': land at the goal instead"
@@ -201,7 +202,7 @@ def test_terrain_is_read_as_far_as_the_rally_points_lie(tmp_path: Path) -> None:
     assert with_rally.terrain.extent.misses(*place[0]) == 0
     path.write_text(mission(rally="[{latitude: 36.65, longitude: -83.0}]"))
     with pytest.raises(RequestError, match=r"7:9: rally\.0: lies .* km outside of the terrain"):
-        gw.plan_route(read_request(path))
+        plan_route(read_request(path))
 
 
 def test_a_rally_point_on_another_continent_is_a_slip(tmp_path: Path) -> None:
@@ -327,7 +328,7 @@ def test_routes_never_break_their_own_fence(masts: list[tuple[int, int, int]]) -
         fence=(*(fence_area_of(a, frame, True) for a in areas), fence_area_of(field, frame, False)),
     )
     try:
-        plan = gw.plan_route(request)
+        plan = plan_route(request)
     except gw.NoRouteError:
         return
     items = fence_items(mission_of(plan).fence)

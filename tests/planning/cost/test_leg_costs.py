@@ -9,11 +9,11 @@ from typing import get_args
 import numpy as np
 import pytest
 
-import gcs_windplan as gw
 from gcs_windplan.errors import InputError
 from gcs_windplan.jobs.missionfile.model import MissionModel
 from gcs_windplan.kernels import edges
 from gcs_windplan.planning.cost import COSTS, CostChoice, LegCost, LegFigures
+from gcs_windplan.planning.planner import plan_routes
 from gcs_windplan.planning.request import Uniform
 from gcs_windplan.terrain import Dem
 from gcs_windplan.wind import Calm
@@ -53,7 +53,7 @@ def hill() -> Dem:
 def test_a_new_cost_is_a_class_and_an_entry(lazy):
     """The quickest way leads over the side of a hill, the lazy one around it."""
     asked = request(terrain=hill(), wind=Calm(), graph=Uniform(75.0, 8))
-    quick, level = gw.plan_routes(asked, [CostChoice("time"), lazy])
+    quick, level = plan_routes(asked, [CostChoice("time"), lazy])
     assert climbed(level) < 0.8 * climbed(quick)
     assert level.totals.seconds >= quick.totals.seconds
     assert level.cost == pytest.approx(level.totals.seconds + 30.0 * climbed(level), rel=1e-6)
