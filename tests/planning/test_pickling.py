@@ -12,7 +12,7 @@ import pytest
 
 from gcs_windplan.errors import Problem
 from gcs_windplan.jobs.requests import read_request
-from gcs_windplan.planning.planner import Plan, plan_route
+from gcs_windplan.planning.planner import PlannedRoute, plan_route
 from gcs_windplan.planning.request import Request
 from gcs_windplan.wind import ConstantWind
 from tests.ensembles import request
@@ -20,7 +20,7 @@ from tests.ensembles import request
 GALLERY = sorted((Path(__file__).parents[2] / "missions").glob("*.yaml"))
 
 
-def corners(plan: Plan) -> list[tuple[float, ...]]:
+def corners(plan: PlannedRoute) -> list[tuple[float, ...]]:
     return [(w.east, w.north, w.altitude, w.seconds) for w in plan.waypoints]
 
 
