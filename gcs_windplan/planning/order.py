@@ -19,8 +19,9 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.errors import NoRouteError, Problem
 from gcs_windplan.flight import clock
+from gcs_windplan.planning.contradictions import too_many_to_order
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.planning.request import MOST_TO_ORDER, Request
+from gcs_windplan.planning.request import Request
 from gcs_windplan.planning.route import Ready, cost_between, find_route, unshaped
 from gcs_windplan.planning.search import find_open_path
 
@@ -113,10 +114,9 @@ def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
     """What is wrong with vias that are to be put in order: more than 12, or two places (n, 3) that are one."""
     if request.order == "given":
         return []
-    if len(request.via) > MOST_TO_ORDER:
-        text = f"{len(request.via)} vias are more than the {MOST_TO_ORDER} that can be put in order: give the order"
-        return [Problem(text, "order")]
-    problems = []
+    problems = list(too_many_to_order(len(request.via)))
+    if problems:
+        return problems
     for i in range(1, len(sites) - 1):
         apart = np.linalg.norm(sites - sites[i], axis=1)
         same = next((j for j in (*range(i), len(sites) - 1) if apart[j] < _SAME), None)

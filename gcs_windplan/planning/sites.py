@@ -10,6 +10,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import Problem, RequestError
+from gcs_windplan.planning.contradictions import height_problems, limits_without_airframe
 from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
 from gcs_windplan.planning.veil import SHARE_OF_GRID, roadmap_radius
 from gcs_windplan.scene import Airspace, Clearance
@@ -181,15 +182,16 @@ def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
     if airframe is not None and request.vehicle.type != airframe.vehicle.type:
         text = f"the airframe ({airframe.name}) is a {airframe.vehicle.type}: leave `type` out"
         problems.append(Problem(text, "vehicle.type"))
-    limit = math.inf if request.max_height is None else request.max_height
-    if request.clearance > limit:
-        text = f"{request.clearance:g} m is more than limits.max_height, {limit:g} m: lower it"
-        problems.append(Problem(text, "clearance"))
-    for i, layer in enumerate(layers):
-        if not request.clearance - _SLACK <= layer <= limit + _SLACK:
-            text = f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and limits.max_height"
-            problems.append(Problem(f"{text} ({limit:g} m)", f"graph.layers.{i}"))
-    return problems
+    limits = request.limits
+    return [
+        *problems,
+        *height_problems(request.clearance, request.max_height, layers),
+        *limits_without_airframe(
+            battery=limits.battery is not None,
+            reserve=limits.reserve_seconds is not None,
+            airframe=airframe is not None,
+        ),
+    ]
 
 
 def _height(site: Site, ground: float, lowest_layer: float) -> float:
