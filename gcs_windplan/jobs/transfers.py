@@ -33,7 +33,7 @@ _NAMES: Final = {"mission": "mission items", "fence": "fence", "rally": "rally p
 
 
 @dataclass(frozen=True, slots=True)
-class Vehicles:
+class VehicleLink:
     """Where a vehicle is, and how it is spoken to.
 
     `address` is udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or a serial DEVICE[:BAUD]. `system`
@@ -122,7 +122,7 @@ def push(
     items = read.mission
     wanted = _to_send(items, kinds, file, notes, named)
     parts: list[TransferPart] = []
-    with Vehicles(to, system, component, key_file, timeout).meet(cancel) as (session, peer):
+    with VehicleLink(to, system, component, key_file, timeout).meet(cancel) as (session, peer):
         if None not in (items.autopilot, peer.autopilot) and items.autopilot != peer.autopilot:
             notes.add(f"{file or 'the mission'} is for {items.autopilot}, and the vehicle is {peer}")
         for kind in wanted:
@@ -164,7 +164,7 @@ def pull(
     notes, file = _Notes(on_note), None if output is None else Path(output)
     wanted = _to_read(file, kinds)
     parts: list[TransferPart] = []
-    with Vehicles(source, system, component, key_file, timeout).meet(cancel) as (session, peer):
+    with VehicleLink(source, system, component, key_file, timeout).meet(cancel) as (session, peer):
         for kind in wanted:
             part = pull_items(session, peer, kind, watch=_watch(f"{kind} of {peer.ident}", progress))
             outcome = part.outcome
@@ -181,11 +181,11 @@ def pull(
     return Transfer(peer, tuple(parts), mission=mission, notes=notes.all)
 
 
-def clear(vehicles: Vehicles, kinds: Kinds = "mission", *, verify: bool = True) -> Transfer:
+def clear(link: VehicleLink, kinds: Kinds = "mission", *, verify: bool = True) -> Transfer:
     """Delete what a vehicle holds, type after type until one is not accepted, and look whether it is gone."""
     wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
     parts: list[TransferPart] = []
-    with vehicles.meet() as (session, peer):
+    with link.meet() as (session, peer):
         for kind in wanted:
             parts.append(clear_items(session, peer, kind, verify=verify))
             if parts[-1].outcome.verdict != "accepted":

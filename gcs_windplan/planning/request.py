@@ -20,8 +20,6 @@ Finish: TypeAlias = Literal["land", "return", "hold"]
 AltitudeReference: TypeAlias = Literal["relative", "amsl"]
 Order: TypeAlias = Literal["given", "free"]
 
-MOST_TO_ORDER = 12  # vias; each more takes twice as long, and as much memory
-
 
 @dataclass(frozen=True, slots=True)
 class Site:

@@ -10,7 +10,8 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import Problem, RequestError
-from gcs_windplan.planning.request import MOST_TO_ORDER, Request, Roadmap, Site, Uniform
+from gcs_windplan.planning.contradictions import height_problems, limits_without_airframe, too_many_to_order
+from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
 from gcs_windplan.planning.veil import SHARE_OF_GRID, roadmap_radius
 from gcs_windplan.scene import Airspace, Clearance
 from gcs_windplan.terrain import Extent, Terrain
@@ -182,15 +183,16 @@ def _limits(request: Request, layers: Sequence[float]) -> list[Problem]:
     if airframe is not None and request.vehicle.type != airframe.vehicle.type:
         text = f"the airframe ({airframe.name}) is a {airframe.vehicle.type}: leave `type` out"
         problems.append(Problem(text, "vehicle.type"))
-    limit = math.inf if request.max_height is None else request.max_height
-    if request.clearance > limit:
-        text = f"{request.clearance:g} m is more than limits.max_height, {limit:g} m: lower it"
-        problems.append(Problem(text, "clearance"))
-    for i, layer in enumerate(layers):
-        if not request.clearance - _SLACK <= layer <= limit + _SLACK:
-            text = f"{layer:g} m above ground is not between clearance ({request.clearance:g} m) and limits.max_height"
-            problems.append(Problem(f"{text} ({limit:g} m)", f"graph.layers.{i}"))
-    return problems
+    limits = request.limits
+    return [
+        *problems,
+        *height_problems(request.clearance, request.max_height, layers),
+        *limits_without_airframe(
+            battery=limits.battery is not None,
+            reserve=limits.reserve_seconds is not None,
+            airframe=airframe is not None,
+        ),
+    ]
 
 
 def _height(site: Site, ground: float, lowest_layer: float) -> float:
@@ -254,10 +256,9 @@ def too_many_or_equal(request: Request, sites: FloatArray) -> list[Problem]:
     """What is wrong with vias that are to be put in order: more than 12, or two places (n, 3) that are one."""
     if request.order == "given":
         return []
-    if len(request.via) > MOST_TO_ORDER:
-        text = f"{len(request.via)} vias are more than the {MOST_TO_ORDER} that can be put in order: give the order"
-        return [Problem(text, "order")]
-    problems = []
+    problems = list(too_many_to_order(len(request.via)))
+    if problems:
+        return problems
     for i in range(1, len(sites) - 1):
         apart = np.linalg.norm(sites - sites[i], axis=1)
         same = next((j for j in (*range(i), len(sites) - 1) if apart[j] < _SAME), None)

@@ -257,7 +257,7 @@ def test_more_than_twelve_are_refused_and_twelve_are_put_in_order():
     shuffled = [5, 2, 11, 0, 7, 9, 1, 4, 10, 3, 8, 6]
     asked = request(wind=Calm(), via=vias(*((east[i], 0.0) for i in shuffled)), order="free", graph=Uniform(120.0, 8))
     assert chosen(asked) == [shuffled.index(i) for i in range(12)]
-    with pytest.raises(RequestError, match=r"order: 13 vias are more than the 12 that can be put in order"):
+    with pytest.raises(RequestError, match=r"order: 13 places are more than the 12 that can be put in order"):
         plan_route(replace(asked, via=(*asked.via, Site("via.12", 0.0, 500.0))))
 
 

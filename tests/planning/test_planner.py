@@ -17,7 +17,7 @@ from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.paper import SampledTest
 from gcs_windplan.planning.cost import COSTS
 from gcs_windplan.planning.planner import plan_route, plan_routes
-from gcs_windplan.planning.request import Request, Roadmap, Site, Uniform
+from gcs_windplan.planning.request import Limits, Request, Roadmap, Site, Uniform
 from gcs_windplan.scene import Airspace, Prism
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Vehicle
@@ -154,8 +154,10 @@ def test_same_request_same_plan():
         ({"goal": Site("goal", 0.0, 0.0, altitude=-20.0)}, "goal", "below the ground"),
         ({"goal": Site("goal", 0.0, 0.0, above_ground=10.0)}, "goal", "less than the clearance"),
         ({"start": Site("start", 0.0, 0.0, above_ground=300.0)}, "start", "above limits.max_height"),
-        ({"clearance": 200.0}, "clearance", "more than limits.max_height"),
-        ({"layers": (10.0, 80.0)}, "graph.layers.0", "not between clearance"),
+        ({"clearance": 200.0}, "limits.max_height", "is below the clearance of 200 m"),
+        ({"layers": (10.0, 80.0)}, "graph.layers.0", "is below the clearance"),
+        ({"layers": (80.0, 40.0)}, "graph.layers.1", "layers go upwards"),
+        ({"limits": Limits(battery=0.3)}, "limits.battery", "needs vehicle.airframe"),
     ],
 )
 def test_contradictions_name_their_field(changes, field, text):

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 
 from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.jobs.missionfile.marks import MarkedError, Marks, Values
-from gcs_windplan.jobs.missionfile.parsing import _compose, _order, _schema_problems, _yaml_problems
+from gcs_windplan.jobs.missionfile.parsing import _order, _schema_problems, _yaml_problems, marks_of
 from gcs_windplan.jobs.missionfile.section import Fields, Finding, Section
 from gcs_windplan.jobs.missionfile.values import (
     AIRSPEED,
@@ -208,7 +208,7 @@ def parse_airframe(text: str, file: Path) -> Airframe:
 
     Raises `MissionFileError` with every problem, in the order of the lines.
     """
-    marks = _marks(text, file)
+    marks = marks_of(text, file, "airframe file")
     try:
         values = Values(marks)
     except MarkedError as error:
@@ -235,15 +235,6 @@ def _placed(problem: Problem, marks: Marks, file: Path) -> Problem:
     path = tuple((problem.field or "").split("."))
     line, column = marks.place(path)
     return replace(problem, file=file, line=line, column=column)
-
-
-def _marks(text: str, file: Path) -> Marks:
-    """What the text holds; the reader of mission files calls an empty one by its own name."""
-    try:
-        return _compose(text, file)
-    except MissionFileError as error:
-        named = [replace(one, message=one.message.replace("mission file", "airframe file")) for one in error.problems]
-        raise MissionFileError(named) from None
 
 
 def _airframe(model: AirframeModel) -> Airframe:

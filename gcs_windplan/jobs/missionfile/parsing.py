@@ -83,7 +83,7 @@ def parse_mission(text: str, file: Path) -> MissionDocument:
 
     Raises `MissionFileError` with every problem, in the order of the lines.
     """
-    marks = _compose(text, file)
+    marks = marks_of(text, file, "mission file")
     try:
         values = Values(marks)
     except MarkedError as error:
@@ -102,7 +102,8 @@ def parse_mission(text: str, file: Path) -> MissionDocument:
     return MissionDocument(model, file, marks)
 
 
-def _compose(text: str, file: Path) -> Marks:
+def marks_of(text: str, file: Path, kind: str) -> Marks:
+    """What a text of this kind of file holds; raises `MissionFileError` for one that is not YAML, or empty."""
     try:
         marks = compose(text)
     except MarkedError as error:
@@ -114,7 +115,7 @@ def _compose(text: str, file: Path) -> Marks:
     else:
         if marks is not None:
             return marks
-        problem = Problem("the mission file is empty; begin it with 'name: ...'", None, file, 1, 1)
+        problem = Problem(f"the {kind} is empty; begin it with 'name: ...'", None, file, 1, 1)
     raise MissionFileError(problem)
 
 

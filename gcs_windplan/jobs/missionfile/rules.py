@@ -6,45 +6,35 @@ wrong by itself is passed over here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations, pairwise
 from typing import Final
 
+from gcs_windplan.errors import Problem
 from gcs_windplan.jobs.missionfile.section import Fields, Finding, Path
 from gcs_windplan.jobs.missionfile.values import CLEARANCE, HEIGHT, LATITUDE, LONGITUDE, SIGNED_LENGTH
+from gcs_windplan.planning.contradictions import (
+    height_problems,
+    limits_without_airframe,
+    outside_limits,
+    too_many_to_order,
+)
 
 DEFAULT_CLEARANCE: Final = 30.0  # [m]
 _SAME_DEGREES: Final = 1e-7  # about a centimetre, and MAVLink's resolution of a coordinate
 _SAME_METRES: Final = 0.01
 _LEAST_MARGIN: Final = 2.0  # [m] ArduPilot's FENCE_MARGIN; by as much ArduCopter cuts corners (measured)
-_MOST_TO_ORDER: Final = 12  # as in `ordering`
 _MOST_CORNERS: Final = 255  # ArduPilot counts them in one byte (AC_PolyFenceItem)
-
-
-@dataclass(frozen=True, slots=True)
-class _Limits:
-    """The heights above ground between which every leg stays, None where they are not known [m]."""
-
-    lowest: float | None
-    highest: float | None
 
 
 def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     """Everything that the sections of a mission say against each other."""
-    limits = _Limits(
-        CLEARANCE.read_or_none(fields.get("clearance", DEFAULT_CLEARANCE)),
-        CLEARANCE.read_or_none(_section(fields, "limits").get("max_height")),
-    )
-    if limits.lowest is not None and limits.highest is not None and limits.lowest > limits.highest:
-        yield Finding(
-            ("limits", "max_height"),
-            f"{limits.highest:g} m is below the clearance of {limits.lowest:g} m; raise one, lower the other",
-        )
-    else:
-        yield from _layers_outside(fields, limits)
-        yield from _sites_outside(fields, limits)
-    yield from _layers_out_of_order(fields)
+    clearance = CLEARANCE.read_or_none(fields.get("clearance", DEFAULT_CLEARANCE))
+    max_height = CLEARANCE.read_or_none(_section(fields, "limits").get("max_height"))
+    apart = clearance is not None and max_height is not None and clearance > max_height
+    yield from _found(height_problems(clearance, max_height, list(_layers(fields))))
+    if not apart:
+        yield from _sites_outside(fields, clearance, max_height)
     yield from _local_without_origin(fields)
     yield from _equal_neighbours(fields)
     yield from fence_contradictions(fields)
@@ -53,44 +43,27 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
         yield Finding(("robust",), "belongs only beside wind.members; leave it out", at_key=True)
 
 
+def _found(problems: Iterable[Problem], at_key: bool = False) -> Iterator[Finding]:
+    """Problems as findings."""
+    for problem in problems:
+        path = (int(part) if part.isdigit() else part for part in str(problem.field).split("."))
+        yield Finding(tuple(path), problem.message, at_key)
+
+
 def _limits_without_measure(fields: Fields) -> Iterator[Finding]:
     """Limits of what nobody would know: a battery without an airframe, gusts without a forecast."""
-    limits = _section(fields, "limits")
-    if "airframe" not in _section(fields, "vehicle"):
-        for name in ("battery", "reserve"):
-            if name in limits:
-                text = "needs vehicle.airframe, which says what the battery holds and what flying takes"
-                yield Finding(("limits", name), text, at_key=True)
+    limits, airframe = _section(fields, "limits"), "airframe" in _section(fields, "vehicle")
+    unknown = limits_without_airframe(battery="battery" in limits, reserve="reserve" in limits, airframe=airframe)
+    yield from _found(unknown, at_key=True)
     if "gust" in limits and "forecast" not in _section(fields, "wind"):
         yield Finding(("limits", "gust"), "needs wind.forecast; no other wind has gusts", at_key=True)
 
 
-def _layers_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
-    for index, layer in _layers(fields):
-        if layer is not None and (complaint := _outside(layer, limits)):
-            yield Finding(("graph", "layers", index), complaint)
-
-
-def _layers_out_of_order(fields: Fields) -> Iterator[Finding]:
-    layers = list(_layers(fields))
-    for (_, below), (index, above) in pairwise(layers):
-        if below is not None and above is not None and above <= below:
-            yield Finding(("graph", "layers", index), f"layers go upwards: {above:g} m is not above {below:g} m")
-
-
-def _sites_outside(fields: Fields, limits: _Limits) -> Iterator[Finding]:
+def _sites_outside(fields: Fields, clearance: float | None, max_height: float | None) -> Iterator[Finding]:
     for path, site in [*_sites(fields), *_beside(fields)]:
         height = HEIGHT.read_or_none(site.get("height"))
-        if height is not None and (complaint := _outside(height, limits)):
+        if height is not None and (complaint := outside_limits(height, clearance, max_height)):
             yield Finding((*path, "height"), complaint)
-
-
-def _outside(height: float, limits: _Limits) -> str | None:
-    if limits.lowest is not None and height < limits.lowest:
-        return f"{height:g} m is below the clearance of {limits.lowest:g} m that every leg keeps"
-    if limits.highest is not None and height > limits.highest:
-        return f"{height:g} m is above limits.max_height, {limits.highest:g} m"
-    return None
 
 
 def _local_without_origin(fields: Fields) -> Iterator[Finding]:
@@ -125,11 +98,7 @@ def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
     """Sites at the same place that follow each other, or may do so in another order; the goal comes last."""
     sites = [(path, _position(site)) for path, site in _sites(fields)]
     if fields.get("order") == "free" and len(sites) > 3:
-        if len(sites) - 2 > _MOST_TO_ORDER:
-            text = (
-                f"{len(sites) - 2} places are more than the {_MOST_TO_ORDER} that can be put in order; give the order"
-            )
-            yield Finding(("order",), text)
+        yield from _found(too_many_to_order(len(sites) - 2))
         pairs = [pair for pair in combinations(sites, 2) if pair != (sites[0], sites[-1])]
     else:
         pairs = list(pairwise(sites))
@@ -216,10 +185,9 @@ def _areas(fields: Fields) -> Iterator[tuple[Path, Fields]]:
             yield ("limits", kind, index), area
 
 
-def _layers(fields: Fields) -> Iterator[tuple[int, float | None]]:
+def _layers(fields: Fields) -> Iterator[float | None]:
     layers = _section(fields, "graph").get("layers")
-    for index, layer in enumerate(layers if isinstance(layers, list | tuple) else ()):
-        yield index, CLEARANCE.read_or_none(layer)
+    yield from (CLEARANCE.read_or_none(layer) for layer in (layers if isinstance(layers, list | tuple) else ()))
 
 
 def _section(fields: Mapping[str, object] | Mapping[int, Fields], name: str | int) -> Fields:
