@@ -189,11 +189,8 @@ def _with_shares(winds: FloatArray, limits: WindLimits, points: FloatArray, seco
     """The winds (n, 3 m) of m members at points (n, 3) with each one's share of its limits (n, 4 m), if any."""
     if not limits:
         return winds
-    parts = []
-    for member in range(winds.shape[1] // 3):
-        one = winds[:, 3 * member : 3 * member + 3]
-        parts += [one, limits.shares(member, one, points, seconds)[:, None]]
-    return np.concatenate(parts, axis=1)
+    shares = limits.shares_of_each(winds, points, seconds)
+    return np.concatenate([winds.reshape(*shares.shape, 3), shares[..., None]], axis=2).reshape(len(points), -1)
 
 
 def _clock_faces(

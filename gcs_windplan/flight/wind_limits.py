@@ -8,7 +8,6 @@ as the wind is linear there.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -54,12 +53,25 @@ class WindLimits:
 
     def shares(self, member: int, winds: FloatArray, points: FloatArray, seconds: float | FloatArray) -> FloatArray:
         """How strong winds (n, 3) and the member's gusts at points (n, 3) are, as shares of what is allowed (n,)."""
-        allowed = (1.0 if self.exact else 1.0 - self.spare) * (1 + _ROUNDING)
-        shares: FloatArray = strength_of(winds) / (self.wind * allowed)
         gusts = self.gusts_of(member)
-        if gusts:
-            shares = np.fmax(shares, mean_strength(gusts, points, seconds) / (self.gust * allowed))
-        return shares
+        return self._shares(winds, at_each(gusts, points, seconds) if gusts else None)
+
+    def shares_of_each(self, winds: FloatArray, points: FloatArray, seconds: float | FloatArray) -> FloatArray:
+        """The same for the winds (n, 3 m) of m members, (n, m); their gusts are worked out together."""
+        members = winds.shape[1] // 3
+        fields = [self.gusts_of(member) for member in range(members)]
+        together = [one for some in fields for one in some]
+        blown = at_each(together, points, seconds) if together else np.empty((len(points), 0))
+        parts = np.split(blown, np.cumsum([3 * len(some) for some in fields])[:-1], axis=1)
+        return np.column_stack(
+            [self._shares(winds[:, 3 * k : 3 * k + 3], parts[k] if fields[k] else None) for k in range(members)]
+        )
+
+    def _shares(self, winds: FloatArray, gusts: FloatArray | None) -> FloatArray:
+        """The shares (n,) of winds (n, 3) and of gusts (n, 3 k) from k fields."""
+        allowed = (1.0 if self.exact else 1.0 - self.spare) * (1 + _ROUNDING)
+        shares: FloatArray = mean_strength(winds) / (self.wind * allowed)
+        return shares if gusts is None else np.fmax(shares, mean_strength(gusts) / (self.gust * allowed))
 
     def __str__(self) -> str:
         """The limits in words: `limits.wind, 10 m/s`."""
@@ -70,12 +82,6 @@ class WindLimits:
 NO_LIMITS: Final = WindLimits()
 
 
-def strength_of(winds: FloatArray) -> FloatArray:
-    """The level speed (n,) of winds (n, 3) [m/s]."""
-    return np.asarray(np.hypot(winds[:, 0], winds[:, 1]))
-
-
-def mean_strength(fields: Sequence[WindField], points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
-    """The mean level speed (n,) of some fields at points (n, 3) [m/s]."""
-    winds = at_each(fields, points, seconds)
+def mean_strength(winds: FloatArray) -> FloatArray:
+    """The mean level speed (n,) of the winds (n, 3 k) of k fields [m/s]."""
     return np.asarray(np.hypot(winds[:, 0::3], winds[:, 1::3]).mean(axis=1))

@@ -15,7 +15,7 @@ import numpy as np
 from gcs_windplan.arrays import FloatArray, IntArray, MaskArray
 from gcs_windplan.kernels.compiled import compiled, inlined
 from gcs_windplan.kernels.edges import Setting, remaining, travel, travel_between
-from gcs_windplan.kernels.triangle import Performance
+from gcs_windplan.kernels.triangle import Performance, beyond_limit
 
 
 @inlined
@@ -109,7 +109,11 @@ def search_grid(
         reached[node] = math.inf
         came_by[node] = -1
     clocks = np.empty(0 if times is None else n)
-    closed = np.zeros(n, dtype=np.uint8)  # 1: expanded, 2: a target
+    closed = np.zeros(n, dtype=np.uint8)  # 1: expanded, or beyond a limit; 2: a target
+    if winds.ndim == 2 and winds.shape[1] > 3:
+        for node in range(n):
+            if beyond_limit(winds, node):
+                closed[node] = 1
     keys = np.empty(max(1024, 4 * seeds.size))
     nodes = np.empty(keys.size, dtype=np.int64)
     size = 0

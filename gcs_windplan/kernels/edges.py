@@ -270,8 +270,6 @@ def _travel_at(
 ) -> tuple[float, float]:  # fmt: skip
     """`travel` at the airspeed of the performance."""
     if from_winds.ndim == 2:
-        if beyond_limit(from_winds, node) or beyond_limit(to_winds, to):
-            return math.inf, 0.0
         steady: float = edge_cost(
             performance, setting, grid, level, east, north, climb, height,
             from_winds[node, 0], from_winds[node, 1], from_winds[node, 2],
@@ -299,7 +297,7 @@ def travel(
 ) -> tuple[float, float]:  # fmt: skip
     """Cost and seconds of an edge between two nodes in whichever world; no seconds are told in a steady one.
 
-    The edge begins at a `height` above mean sea level [m].
+    The edge begins at a `height` above mean sea level [m]. In a steady world its ends have to be within the limits.
     """
     if grid is None:
         cost, seconds = _travel_at(
@@ -324,7 +322,9 @@ def travel_between(
     each: Any, from_winds: FloatArray, node: int, to_winds: FloatArray, to: int,
     de: float, dn: float, dz: float, height: float, clock: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """`travel` along an edge given by its vector (de, dn, dz) [m]."""
+    """`travel` along an edge given by its vector (de, dn, dz) [m]; infinite where an end is beyond a limit."""
+    if from_winds.ndim == 2 and (beyond_limit(from_winds, node) or beyond_limit(to_winds, to)):
+        return math.inf, math.inf
     level = math.sqrt(de * de + dn * dn)
     if level == 0.0 and dz == 0.0:
         return 0.0, 0.0

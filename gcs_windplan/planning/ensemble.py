@@ -27,7 +27,7 @@ class Spread:
         return sorted(self.seconds)[rank_of(quantile, len(self.seconds))]
 
     def energy_at(self, quantile: float) -> float:
-        """The energy of the member at a quantile, from the thriftiest up [J]."""
+        """The energy of the member at a quantile, from the least up [J]."""
         return sorted(self.energies)[rank_of(quantile, len(self.energies))]
 
     @property

@@ -12,9 +12,10 @@ import numpy as np
 from gcs_windplan.arrays import BoolArray, FloatArray
 from gcs_windplan.errors import NoRouteError, Problem
 from gcs_windplan.flight import fly_legs
-from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits, mean_strength, strength_of
+from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits, mean_strength
 from gcs_windplan.planning.cost import rank_of
 from gcs_windplan.planning.request import Limits, Request
+from gcs_windplan.wind.each import at_each
 from gcs_windplan.wind.field import WindField
 from gcs_windplan.wind.gridded import GriddedWind, mean_of
 
@@ -67,8 +68,9 @@ def _strengths(
     wind: WindField, gusts: Sequence[WindField], points: FloatArray, seconds: float | FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The strength of the wind and of its gusts (n,) each [m/s]; NaN where it is not known, or there are none."""
-    unknown = np.full(len(points), np.nan)
-    return strength_of(wind.at(points, seconds)), mean_strength(gusts, points, seconds) if gusts else unknown
+    unknown = np.full((len(points), 3), np.nan)
+    blown = at_each(gusts, points, seconds) if gusts else unknown
+    return mean_strength(wind.at(points, seconds)), mean_strength(blown)
 
 
 def _moments(times: FloatArray) -> FloatArray:

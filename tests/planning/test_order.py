@@ -252,7 +252,7 @@ def test_limits_hold_while_the_order_is_sought():
         plan_route(replace(asked, limits=Limits(wind=10.0)))
 
 
-def test_more_than_twelve_are_refused_and_twelve_are_put_in_order():
+def test_more_than_twelve_are_refused_and_twelve_are_ordered():
     east = np.linspace(-800.0, 800.0, 13)
     shuffled = [5, 2, 11, 0, 7, 9, 1, 4, 10, 3, 8, 6]
     asked = request(wind=Calm(), via=vias(*((east[i], 0.0) for i in shuffled)), order="free", graph=Uniform(120.0, 8))
