@@ -9,6 +9,7 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ import pytest
 
 import gcs_windplan as gw
 from gcs_windplan.errors import WindplanError
+from tests.standin.loopback import free_port
 
 ROOT = Path(__file__).resolve().parents[1]
 STUB = ROOT / "gcs_windplan" / "__init__.pyi"
@@ -154,6 +156,13 @@ def test_progress_is_told_and_work_is_cancelled():
         )
     with pytest.raises(gw.CancelledError):
         gw.review(MISSION, cancel=token)
+
+
+def test_waiting_for_a_vehicle_is_cancelled():
+    token = gw.CancelToken()
+    threading.Timer(0.2, token.cancel).start()
+    with pytest.raises(gw.CancelledError):
+        gw.push(gw.plan(MISSION), f"udpin:127.0.0.1:{free_port()}", timeout=60.0, cancel=token)
 
 
 def test_review_calls_its_criteria_by_their_names():

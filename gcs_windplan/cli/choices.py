@@ -55,16 +55,6 @@ def asked_mission(file: Path, airspeed: str | None) -> Mission:
 
 def output_folder(folder: Path | None, name: str) -> Path:
     """The folder to write into, made if need be."""
-    from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.jobs.outputs import file_stem, make_folder
 
-    chosen = folder if folder is not None else Path("out") / file_stem(name)
-    try:
-        chosen.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(Problem(f"the folder cannot be made ({error.strerror})", file=chosen)) from None
-    return chosen
-
-
-def file_stem(name: str) -> str:
-    """A mission's name as the name of files."""
-    return name.strip().lower().replace(" ", "_")
+    return make_folder(folder if folder is not None else Path("out") / file_stem(name))

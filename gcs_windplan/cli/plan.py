@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, asked_mission, file_stem, output_folder
+from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, asked_mission, output_folder
 
 if TYPE_CHECKING:
-    from gcs_windplan.planning.planner import PlannedRoute
     from gcs_windplan.planning.request import Request
 
 HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
@@ -36,6 +35,7 @@ def plan(
 
     from gcs_windplan.cli.tables import print_legs
     from gcs_windplan.jobs.mission import as_cost
+    from gcs_windplan.jobs.outputs import file_stem, plan_files, write_files
     from gcs_windplan.jobs.plans import plan as plan_mission
 
     if cost is not None and cost != as_cost(asked.cost).name:
@@ -44,9 +44,9 @@ def plan(
         asked = replace(asked, export=replace(asked.export, speed_changes=speed_changes))
     planned = plan_mission(asked, keep_reserve=not force)
     request = planned.request
-    files = render(planned)
+    files = plan_files(planned)
     folder = output_folder(output, request.name)
-    written = write(files, folder)
+    written = write_files(files, folder)
     print_legs(planned)
     report(written)
     beside = [name for name, there in (("fence", request.fence), ("rally points", request.rally)) if there]
@@ -57,42 +57,6 @@ def plan(
         typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
 
 
-def render(planned: PlannedRoute) -> dict[str, str | bytes]:
-    """The content of every file of a plan, by file name; nothing is written yet."""
-    from gcs_windplan.formats import format_plan, format_waypoints
-    from gcs_windplan.formats.summary import format_summary
-    from gcs_windplan.planning.export import mission_of
-    from gcs_windplan.report import draw_map, draw_profile
-
-    request = planned.request
-    stem = file_stem(request.name)
-    mission = mission_of(planned)
-    files: dict[str, str | bytes] = {}
-    if request.export.waypoints:
-        files[f"{stem}.waypoints"] = format_waypoints(mission.without_fence())
-    if request.export.plan:
-        files[f"{stem}.plan"] = format_plan(mission)
-    files["summary.json"] = format_summary(planned)
-    files["map.png"] = draw_map([planned])
-    files["profile.png"] = draw_profile(planned)
-    return files
-
-
-def write(files: dict[str, str | bytes], folder: Path) -> list[Path]:
-    """Write files into a folder, each whole or not at all; nothing if one of the names is taken by a folder."""
-    from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.formats import write_atomically
-
-    for name in files:
-        if (folder / name).is_dir():
-            raise InputError(
-                Problem("is a folder, and a file of this name is to be written: move it", file=folder / name)
-            )
-    for name, content in files.items():
-        write_atomically(folder / name, content)
-    return [folder / name for name in files]
-
-
 def report(paths: list[Path]) -> None:
     """Say what was written."""
     for path in paths:
@@ -101,5 +65,7 @@ def report(paths: list[Path]) -> None:
 
 def stale(folder: Path, request: Request, files: dict[str, str | bytes]) -> list[Path]:
     """Mission files of an earlier plan in the same folder, which somebody might upload in place of this one's."""
+    from gcs_windplan.jobs.outputs import file_stem
+
     names = (f"{file_stem(request.name)}.waypoints", f"{file_stem(request.name)}.plan")
     return [folder / name for name in names if name not in files and (folder / name).exists()]

@@ -22,25 +22,15 @@ def reproduce(
     quick: Annotated[bool, typer.Option("--quick", help="Sweep over a few starts and goals only.")] = False,
 ) -> None:
     """Reproduce and write."""
-    from gcs_windplan.cli.plan import write
+    from gcs_windplan.jobs.outputs import make_folder, write_files
     from gcs_windplan.paper import reproduce as fly_again
 
-    _make(output)
+    make_folder(output)  # before minutes are spent on what goes into it
     done = fly_again(quick)
     for table in done.tables:
         _print(table)
-    for path in write(done.files, output):
+    for path in write_files(done.files, output):
         typer.echo(f"wrote {path}")
-
-
-def _make(folder: Path) -> None:
-    """Make the folder before minutes are spent on what goes into it."""
-    from gcs_windplan.errors import InputError, Problem
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(Problem(f"the folder cannot be made ({error.strerror})", file=folder)) from None
 
 
 def _print(table: Table) -> None:

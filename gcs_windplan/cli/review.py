@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -20,7 +20,6 @@ A mission file (.yaml) is planned and judged in its own world. For a .plan or .w
 --wind, --vehicle, or take that of a mission file: --by MISSION.yaml. Two missions are compared.
 """
 EPILOG = "Exit codes: 0 nothing found; 1 findings, or no route exists; 2 something handed in cannot be used."
-_EXPORTS: Final = ("kml", "geojson", "csv", "png")
 
 
 def review(
@@ -122,11 +121,12 @@ def review(
 def _exports(also: str | None) -> tuple[str, ...]:
     """The formats that are written beside the page."""
     from gcs_windplan.errors import InputError, Problem
+    from gcs_windplan.jobs.outputs import REVIEW_EXPORTS
 
     wanted = tuple(dict.fromkeys(part.strip().lower() for part in (also or "").split(",") if part.strip()))
-    unknown = [name for name in wanted if name not in _EXPORTS]
+    unknown = [name for name in wanted if name not in REVIEW_EXPORTS]
     if unknown:
-        raise InputError(Problem(f"{unknown[0]!r} is none of {', '.join(_EXPORTS)}", "--also"))
+        raise InputError(Problem(f"{unknown[0]!r} is none of {', '.join(REVIEW_EXPORTS)}", "--also"))
     return wanted
 
 
@@ -134,46 +134,19 @@ def _write(
     assessments: Sequence[Assessment], output: Path | None, wanted: Sequence[str], read: Sequence[Path]
 ) -> list[Path]:
     """Write the page and what is wanted beside it, all or nothing, and never over what was read."""
-    from gcs_windplan.cli.plan import write
     from gcs_windplan.errors import InputError, Problem
-    from gcs_windplan.report.page import render_page
+    from gcs_windplan.jobs.outputs import make_folder, review_files, write_files
 
     page = output if output is not None else _default(assessments)
     if page.is_dir():
         page = page / "review.html"
     if page.suffix.lower() not in (".html", ".htm"):
         raise InputError(Problem(f"{page.name} is no name of a page: give one that ends in .html", "--output"))
-    files: dict[str, str | bytes] = {page.name: render_page(assessments)}
-    for number, assessment in enumerate(assessments, start=1):
-        stem = page.stem if len(assessments) == 1 else f"{page.stem}-{number}"
-        files.update(_beside(assessment, stem, wanted))
-    if "png" in wanted:
-        from gcs_windplan.report import draw_assessment_map
-
-        files[f"{page.stem}.map.png"] = draw_assessment_map(assessments)
+    files = review_files(assessments, page.name, wanted)
     over = next((file for file in read if (page.parent / file.name).resolve() == file.resolve()), None)
     if over is not None and over.name in files:
         raise InputError(Problem("is what was read, and would be written over: choose another -o", file=over))
-    try:
-        page.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(Problem(f"the folder cannot be made ({error.strerror})", file=page.parent)) from None
-    return write(files, page.parent)
-
-
-def _beside(assessment: Assessment, stem: str, wanted: Sequence[str]) -> dict[str, str | bytes]:
-    """The files of one mission that are wanted beside the page, by name."""
-    from gcs_windplan.formats.geojson import format_geojson
-    from gcs_windplan.formats.kml import format_kml
-    from gcs_windplan.formats.legs_csv import format_legs_csv
-
-    texts = {"kml": format_kml, "geojson": format_geojson, "csv": format_legs_csv}
-    files: dict[str, str | bytes] = {f"{stem}.{kind}": texts[kind](assessment) for kind in wanted if kind in texts}
-    if "png" in wanted:
-        from gcs_windplan.report import draw_assessment_profile
-
-        files[f"{stem}.profile.png"] = draw_assessment_profile(assessment)
-    return files
+    return write_files(files, make_folder(page.parent))
 
 
 def _default(assessments: Sequence[Assessment]) -> Path:

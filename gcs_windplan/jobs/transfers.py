@@ -49,9 +49,15 @@ class VehicleLink:
 
     @contextmanager
     def meet(self, cancel: CancelToken | None = None) -> Iterator[tuple[Session, Peer]]:
-        """A session with the vehicle that it met. Raises `InputError` and `LinkError`."""
+        """A session with the vehicle that it met. Raises `InputError`, `LinkError`, and `CancelledError` till then."""
         with open_session(self.address, key_file=self.key_file, timeout=self.timeout, cancel=cancel) as session:
-            yield session, session.meet(self.system, self.component)
+            try:
+                peer = session.meet(self.system, self.component)
+            except LinkError:
+                if cancel is not None:
+                    cancel.raise_if_cancelled()
+                raise
+            yield session, peer
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +108,8 @@ def push(
     udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or a serial DEVICE[:BAUD]; `system` and
     `component` name the vehicle where several share the link; with a `key_file` it is signed; all ends after `timeout`
     [s]. Without `kinds` everything goes that the mission holds; with `all` the vehicle shall hold exactly that, so that
-    a fence that it lacks is deleted. `on_note` is called with each remark as it comes.
+    a fence that it lacks is deleted. `on_note` is called with each remark as it comes; `named` is how the face that
+    asks calls its options.
 
     Raises `InputError` for what cannot be used, `LinkError` where nobody is there, and as `plan` does. A cancelled
     transfer tells the vehicle and ends as `unknown`.

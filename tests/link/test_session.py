@@ -11,13 +11,15 @@ from gcs_windplan.errors import InputError, LinkError
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.link.codec import Codec
 from gcs_windplan.link.discovery import LISTENING
+from gcs_windplan.link.firmware import outgoing_items
 from gcs_windplan.link.home import Homes
 from gcs_windplan.link.session import OWN, Session
 from gcs_windplan.link.verified import clear_items, pull_items, push_items
 from gcs_windplan.mission import Home
+from gcs_windplan.progress import CancelToken
 
 from .autopilots import PX4, ArduPilot, Autopilot
-from .bench import bench
+from .bench import bench, survey
 from .simulation import SimulatedTransport, World
 
 
@@ -43,6 +45,22 @@ def test_a_heartbeat_a_second_while_it_waits_and_while_it_sends():
     assert abs(len(beats) - elapsed) <= 2
     assert {(beat.type, beat.autopilot) for beat in beats} == {(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID)}
     assert {(beat.get_srcSystem(), beat.get_srcComponent()) for beat in beats} == {tuple(OWN)}
+
+
+def test_a_token_ends_a_transfer_and_the_vehicle_is_told():
+    world, token = World(), CancelToken()
+    transport = SimulatedTransport(world)
+    PX4(world)
+    session = Session(transport, clock=world.clock, cancel=token)
+    peer = session.meet()
+    items = outgoing_items(survey(20), "mission", "px4")
+    part = push_items(session, peer, "mission", items, watch=lambda done, total: token.cancel() if done >= 5 else None)
+    assert (part.outcome.verdict, part.outcome.reason) == ("unknown", "interrupted")
+    assert session.interrupted
+    codec = Codec(1, 1)
+    sent = [message for _, data in transport.sent for message in codec.decode(data)]
+    assert sent[-1].get_type() == "MISSION_ACK"
+    assert sent[-1].type == mavlink.MAV_MISSION_OPERATION_CANCELLED
 
 
 def test_nobody():
