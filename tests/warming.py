@@ -15,7 +15,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[1]
 GRID = {"uniform": {"spacing": "400 m"}}
 FINE = {"uniform": {"spacing": "400 m", "neighbours": 64}}
-ROADMAP = {"prm": {"nodes": 60}}
+ROADMAP = {"prm": {"nodes": 200}}
 LANES = (
     (("front", {"graph": GRID}), ("front", {"graph": ROADMAP}), ("jacksboro", {"graph": FINE, "limits": None})),
     (

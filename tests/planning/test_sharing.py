@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -91,3 +92,13 @@ def test_no_moment_is_sampled_twice():
         assert air.winds.shape == (len(air.times), veil.size, 3)
     assert sorted(wind.asked[0]) == [3600.0 * hour for hour in range(5)]
     assert graph.sampled == tuple(wind.asked[0])
+
+
+def test_a_graph_travels_with_the_moments_that_are_sampled():
+    veil = lay_grid(rules_over(rough_dem(1, relief=20.0), maximum=110.0), AREA, 150.0, (40.0,), 16)
+    graph = sample_wind(veil, ShiftingWind(tuple(range(5)), HOURS))
+    graph.winds_between(0.0, 100.0)
+    copy = pickle.loads(pickle.dumps(graph))
+    assert copy.sampled == graph.sampled == HOURS[:2]
+    assert (copy.winds_between(0.0, 14_000.0).winds == graph.winds_between(0.0, 14_000.0).winds).all()
+    assert copy.sampled == HOURS

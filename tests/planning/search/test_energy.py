@@ -98,7 +98,7 @@ def test_energy_on_a_grid_is_what_its_edges_add_up_to_and_no_bound_changes_it(se
     edges = zip(found.points[:-1], found.points[1:], winds[:-1], winds[1:], strict=True)
     added = sum(naive_edge_price(vehicle, cost.power.airspeeds, a, b, wa, wb, watts) for a, b, wa, wb in edges)
     assert found.cost == pytest.approx(added, rel=rounding)
-    monkeypatch.setattr("gcs_windplan.planning.cost.costs.least_prices", lambda points, *_: np.zeros(len(points)))
+    monkeypatch.setattr("gcs_windplan.planning.cost.section.least_prices", lambda points, *_: np.zeros(len(points)))
     blind = find_path(windy, cost, start, goal)
     assert found.cost == pytest.approx(blind.cost, rel=rounding)
     assert found.expanded < blind.expanded
