@@ -6,6 +6,7 @@ import io
 import os
 import signal
 import sys
+from types import ModuleType
 from typing import Annotated
 
 import typer
@@ -17,7 +18,6 @@ from gcs_windplan.cli import (
     departures,
     diff,
     help,
-    linking,
     plan,
     pull,
     push,
@@ -41,20 +41,21 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     no_args_is_help=True,
 )
-app.command("plan", help=plan.HELP, epilog=_EPILOG)(plan.plan)
-app.command("push", help=push.HELP, epilog=linking.EPILOG)(push.push)
-app.command("pull", help=pull.HELP, epilog=linking.EPILOG)(pull.pull)
-app.command("diff", help=diff.HELP, epilog=diff.EPILOG)(diff.diff)
-app.command("check", help=check.HELP, epilog=check.EPILOG)(check.check)
-app.command("clear", help=clear.HELP, epilog=linking.EPILOG)(clear.clear)
-app.command("vehicle", help=vehicle.HELP, epilog=vehicle.EPILOG)(vehicle.vehicle)
-app.command("compare", help=compare.HELP, epilog=_EPILOG)(compare.compare)
-app.command("departures", help=departures.HELP, epilog=_EPILOG)(departures.departures)
-app.command("wind", help=wind.HELP, epilog=_EPILOG)(wind.wind)
-app.command("review", help=review.HELP, epilog=review.EPILOG)(review.review)
-app.command("reproduce", help=reproduce.HELP, epilog=_EPILOG)(reproduce.reproduce)
-app.command("schema", help=schema.HELP)(schema.schema)
-app.command("help", help=help.HELP)(help.help)
+#: One verb a file: `HELP`, the function of the file's name, and `EPILOG` where its exit codes are others.
+VERBS = (
+    plan, push, pull, diff, check, clear, vehicle, compare, departures, wind, review, reproduce, schema, help,
+)  # fmt: skip
+
+
+def add_verb(target: typer.Typer, module: ModuleType) -> None:
+    """Make a verb of a file."""
+    name = module.__name__.rpartition(".")[2]
+    epilog = getattr(module, "EPILOG", _EPILOG)
+    target.command(name, help=module.HELP, epilog=epilog)(getattr(module, name))
+
+
+for _module in VERBS:
+    add_verb(app, _module)
 
 
 def _print_version(wanted: bool) -> None:

@@ -43,8 +43,9 @@ def departures(
 
     from gcs_windplan.jobs.mission import as_moment
     from gcs_windplan.jobs.moments import moments_of
-    from gcs_windplan.jobs.plans import as_request, swept
+    from gcs_windplan.jobs.plans import as_request
     from gcs_windplan.jobs.winds import DAY
+    from gcs_windplan.planning.departures import sweep
     from gcs_windplan.progress import UNTRACKED
 
     asked = asked_mission(mission, airspeed)
@@ -52,7 +53,7 @@ def departures(
     _refuse_odd(len(moments))
     request = as_request(asked, UNTRACKED, moments[0], (moments[-1] - moments[0]).total_seconds() + DAY)
     since = time.monotonic()
-    found = list(_shown(swept(request, moments, cores), len(moments), not json_output))
+    found = list(_shown(sweep(request, moments, cores=cores), len(moments), not json_output))
     took = time.monotonic() - since
     if json_output:
         from gcs_windplan.formats.departures import format_departures

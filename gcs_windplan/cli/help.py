@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 HELP = "Show a page of the manual; without TOPIC, what pages there are."
+EPILOG = None
 
 
 def help(

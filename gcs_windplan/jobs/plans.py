@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -104,8 +104,10 @@ def plan(
     request = as_request(mission, tracker)
     choice = request.cost if cost is None else as_cost(cost)
     request = replace(request, cost=choice)
-    tracker.at("planning the route")
-    found = planner.plan_route(request) if keep_reserve else planner.plan_routes(request, [choice])[0]
+    if keep_reserve:
+        found = planner.plan_route(request, progress=progress, cancel=cancel)
+    else:
+        found = planner.plan_routes(request, [choice], progress=progress, cancel=cancel)[0]
     tracker.at("done")
     return _public(found)
 
@@ -131,8 +133,7 @@ def compare(
     """
     tracker = Tracker(progress, cancel)
     request = as_request(mission, tracker)
-    tracker.at("planning by each cost")
-    found = planner.plan_routes(request, _choices(request, costs))
+    found = planner.plan_routes(request, _choices(request, costs), progress=progress, cancel=cancel)
     tracker.at("done")
     return [_public(one) for one in found]
 
@@ -163,24 +164,15 @@ def departures(
     [176, 176, 176]
     """
     from gcs_windplan.jobs.moments import moments_of
+    from gcs_windplan.planning.departures import sweep
 
     tracker = Tracker(progress, cancel)
     if not isinstance(mission, Mission | Request):
         mission = read_mission(mission)
     moments = moments_of(first, last, every, as_moment(mission.departure))
     lasting = (moments[-1] - moments[0]).total_seconds() + DAY
-    return list(swept(as_request(mission, tracker, moments[0], lasting), moments, cores, tracker))
-
-
-def swept(
-    request: Request, moments: Sequence[datetime], cores: int | None = None, tracker: Tracker = UNTRACKED
-) -> Iterator[Departure]:
-    """The best route at each departure, as they are found."""
-    from gcs_windplan.planning.departures import sweep
-
-    for number, one in enumerate(sweep(request, moments, cores=cores), start=1):
-        tracker.at("departures", number, len(moments))
-        yield one
+    request = as_request(mission, tracker, moments[0], lasting)
+    return list(sweep(request, moments, cores=cores, progress=progress, cancel=cancel))
 
 
 def as_request(

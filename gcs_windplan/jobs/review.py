@@ -153,8 +153,7 @@ def _planned(
             sources = list(sources_of_mission(mission, request.wind.name))
         else:
             request = mission
-        tracker.at("planning the route")
-        plan = planner.plan_routes(request, [request.cost])[0]
+        plan = planner.plan_routes(request, [request.cost], progress=tracker.progress, cancel=tracker.cancel)[0]
     case = case_of(plan.request, mission_of(plan), sources)
     return criteria.with_home(replace(case, remarks=plan.notes, limits=criteria.limits_with(case.limits)))
 

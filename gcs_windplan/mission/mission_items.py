@@ -19,6 +19,11 @@ class MissionItems:
     Home is not among `items`: it becomes row 0 of a .waypoints file and item 0 on ArduPilot when written
     there. `cruise_speed` (fixed-wing) and `hover_speed` (multicopter) [m/s] are what a ground station reckons
     with. Fence and rally points travel apart from the items (`fence_items`, `rally_items`).
+
+    >>> import gcs_windplan as gw
+    >>> home = gw.Home(gw.GeoPoint(46.81, 9.84), 1560.0)
+    >>> gw.MissionItems((gw.MissionItem(3, 22, altitude=60.0),), home, "ardupilot", "multicopter").rally
+    ()
     """
 
     items: tuple[MissionItem, ...]

@@ -11,7 +11,12 @@ from gcs_windplan.planning.cost.leg_costs import COSTS, LegCost
 
 @dataclass(frozen=True, slots=True)
 class CostChoice:
-    """Which cost, by its name in `COSTS`, with the weights of the hybrid one (11)."""
+    """Which cost, by its name in `COSTS`, with the weights of the hybrid one (11).
+
+    >>> import gcs_windplan as gw
+    >>> print(gw.CostChoice("hybrid", distance=0.3, angle=0.7))
+    hybrid (distance 0.3, angle 0.7)
+    """
 
     name: str = "time"
     distance: float = 0.1
