@@ -18,6 +18,7 @@ from gcs_windplan.cli import (
     departures,
     diff,
     help,
+    linking,
     plan,
     pull,
     push,

@@ -15,6 +15,7 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.formats.geojson import format_geojson
 from gcs_windplan.formats.kml import format_kml
 from gcs_windplan.formats.legs_csv import format_legs_csv
+from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.jobs.review import review as review_mission
 
 five_centimetres = 0.05
@@ -137,8 +138,7 @@ def test_the_triangle_of_a_real_leg(shared_data):
 
 def test_a_mission_in_a_real_forecast(shared_data, tmp_path):
     """Davos in ERA5 of 2020-02-22: the wind is the one that the forecast's own report tells."""
-    from gcs_windplan.cli.wind_options import read_place
-    from gcs_windplan.wind.inspect.sounding import take_sounding
+    from gcs_windplan.wind.inspect.sounding import HeightAsked, take_sounding
     from gcs_windplan.wind.reading import open_indexes
 
     file = tmp_path / "davos.waypoints"
@@ -153,11 +153,10 @@ def test_a_mission_in_a_real_forecast(shared_data, tmp_path):
     era5 = shared_data / "wind" / "bella_lui_weather_data_ERA5.nc"
     review = judge(file, str(shared_data / "dem" / "davosdorf.tif"), wind=(str(era5),), departure="2020-02-22T08:00Z")
     middle = np.argmin(np.abs(review.profile.distance - review.legs[0].distance / 2))
-    place = f"{review.profile.latitude_deg[middle]},{review.profile.longitude_deg[middle]},2260"
+    point = GeoPoint(float(review.profile.latitude_deg[middle]), float(review.profile.longitude_deg[middle]))
     moment = review.departure.timestamp() + review.profile.seconds[middle]
-    point, height = read_place(place)
     with open_indexes([era5]) as indexes:
-        found = take_sounding(indexes, point, moment, None, height).at_height
+        found = take_sounding(indexes, point, moment, None, HeightAsked(2260.0)).at_height
     assert found is not None
     here = (review.profile.wind_east[middle], review.profile.wind_north[middle])
     assert here == pytest.approx(tuple(found.winds[0]), abs=0.05)
