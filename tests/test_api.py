@@ -167,7 +167,7 @@ def test_waiting_for_a_vehicle_is_cancelled():
 
 def test_review_calls_its_criteria_by_their_names():
     plan = gw.plan(MISSION)
-    with pytest.raises(gw.InputError, match=r"^max_gust: no gusts are told"):
+    with pytest.raises(gw.InputError, match=r"^max_gust: the wind has no gusts"):
         gw.review(plan.items, terrain="flat:300", max_gust=10.0)
     with pytest.raises(gw.InputError, match=r"^terrain: cannot stand beside"):
         gw.review(MISSION, terrain="flat:300")

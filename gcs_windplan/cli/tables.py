@@ -151,7 +151,7 @@ def _way_home(plan: PlannedRoute) -> list[str]:
     ways = plan.ways_home
     if ways is None:
         return []
-    most = f"the thriftiest way home takes at most {watt_hours(max(ways.energies))} Wh"
+    most = f"the minimum-energy return takes at most {watt_hours(max(ways.energies))} Wh"
     if plan.request.rally:
         most += f", to a rally point at most {watt_hours(max(ways.alternates))} Wh"
     if ways.point_of_no_return is None:
@@ -215,11 +215,11 @@ def print_comparison(plans: Sequence[PlannedRoute]) -> None:
 def _gain(plans: Sequence[PlannedRoute]) -> list[str]:
     """What least energy gains against the shortest way, and how high it flies in which wind."""
     by_name = {plan.choice.name: plan for plan in plans}
-    shortest, thriftiest = by_name["distance"].totals.energy, by_name["energy"].totals.energy
-    if shortest is None or thriftiest is None:
+    shortest, least = by_name["distance"].totals.energy, by_name["energy"].totals.energy
+    if shortest is None or least is None:
         return []
     heights = [mean_height(by_name["energy"], sign) for sign in (-1, 1)]
-    line = f"energy takes {watt_hours(shortest - thriftiest)} Wh less than distance"
+    line = f"energy takes {watt_hours(shortest - least)} Wh less than distance"
     if None in heights:
         return [line]
     return [f"{line}; it flies {heights[0]:.0f} m above ground in head wind and {heights[1]:.0f} m in tail wind (mean)"]

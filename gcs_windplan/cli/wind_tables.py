@@ -130,7 +130,7 @@ def _median_and_ends(values: FloatArray) -> FloatArray:
 
 
 def _arc(directions: FloatArray) -> FloatArray:
-    """The median and the ends of the smallest arc that holds all directions [deg], clockwise; NaN passed over."""
+    """The median and the ends of the smallest arc that holds all directions [deg], clockwise; NaN ignored."""
     there = np.sort(directions[np.isfinite(directions)])
     if not len(there):
         return np.full(3, np.nan)

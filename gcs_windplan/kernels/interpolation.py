@@ -5,7 +5,7 @@ be missing. Between the two, the wind is linear as well. Below the lowest level 
 
       z ▲      ── level above sea level
         │      ── level above sea level          a forecast level below the forecast's own ground (or below the levels
-        │      ·                                 above the ground) is a fiction of the model's and passed over
+        │      ·                                 above the ground) is a fiction of the model's and ignored
         │      ── level above ground, at ground + 100 m
         │      ── level above ground, at ground + 10 m
         │      ·  law: log or power

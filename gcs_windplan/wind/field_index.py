@@ -143,7 +143,7 @@ class Field2D:
 class FieldIndex:
     """The fields of an open file, its title and format, and what in it is no wind or cannot be used, for people.
 
-    Only quantities named in `Quantity` are listed; `unused` says in words what was passed over for a reason that a
+    Only quantities named in `Quantity` are listed; `unused` says in words what was ignored for a reason that a
     pilot might want to know ("12 fields on a reduced Gaussian grid: regrid them"), not what simply is no wind.
     """
 

@@ -1,7 +1,7 @@
 """What sections of a mission file say against each other, as far as no terrain is needed to tell.
 
 The rules read the file's plain values, so that they speak even where other fields are wrong; a value that is
-wrong by itself is passed over here.
+wrong by itself is ignored here.
 """
 
 from __future__ import annotations

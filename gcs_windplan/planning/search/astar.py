@@ -197,8 +197,7 @@ def no_route(
     if outlasted:
         advice += " Some ways last longer than the forecast reaches: take a later end, or depart earlier."
     return NoRouteError(
-        f"no route: the search reached {len(reached)} of {veil.size} nodes, and what leads on is cut by {listed}."
-        f" {advice}",
+        f"no route: the search reached {len(reached)} of {veil.size} nodes, blocked by {listed}. {advice}",
         cuts,
         "; ".join(f"{name}: {count} legs" for name, count in cuts.items()),
     )

@@ -18,7 +18,7 @@ _NOTHING = -1e100  # what a missing value decodes to
 
 
 class Unused(Exception):
-    """Why a field is passed over, for people: what follows on "12 fields"."""
+    """Why a field is ignored, for people: what follows on "12 fields"."""
 
 
 @contextmanager

@@ -269,7 +269,7 @@ def _at(levels: Levels, quantity: Quantity) -> Quantity | None:
 
 
 def _unused_note(names: list[str], reason: str) -> str:
-    """Which variables were passed over and why."""
+    """Which variables are ignored and why."""
     if reason.startswith(f"{names[0]} "):
         return reason
     more = f" and {len(names) - _FEW} more" if len(names) > _FEW else ""

@@ -30,7 +30,7 @@ _SAMPLED_FIELDS, _SAMPLED_VALUES = 200, 20_000_000  # that are read of more
 
 @dataclass(frozen=True, slots=True)
 class FileSummary:
-    """A file: its format and title, its number of fields, and what its reader passed over."""
+    """A file: its format and title, its number of fields, and what its reader ignored."""
 
     path: str
     format: str
