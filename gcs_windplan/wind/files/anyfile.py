@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import codecs
+import importlib
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from gcs_windplan.errors import Problem, WindError
 from gcs_windplan.wind.field_index import FieldIndex
@@ -20,27 +23,37 @@ _PACKED = {
 }
 
 
+class ForecastFormat(NamedTuple):
+    """A format: whether a file's first bytes, also as text in small letters, are of it; who opens it, by module."""
+
+    recognises: Callable[[bytes, str], bool]
+    module: str
+    opener: str
+
+
+_HERE = "gcs_windplan.wind.files"
+#: The formats, in the order in which they are tried; modules are imported when they are needed.
+FORMATS: tuple[ForecastFormat, ...] = (
+    ForecastFormat(lambda head, text: head.startswith((b"CDF", b"\x89HDF")), f"{_HERE}.netcdf", "open_netcdf"),
+    ForecastFormat(lambda head, text: text.startswith(("{", "[")), f"{_HERE}.openmeteo", "open_openmeteo"),
+    ForecastFormat(lambda head, text: b"GRIB" in head, f"{_HERE}.grib", "open_grib"),
+)
+
+
 def open_index(path: Path) -> AbstractContextManager[FieldIndex]:
-    """The fields of a NetCDF or GRIB file or an answer of Open-Meteo, which can be read as long as it is open.
+    """The fields of a forecast file of one of the `FORMATS`, which can be read as long as it is open.
 
     Raises `WindError` that begins with the path: for a file that is missing, empty or of another format, and whatever
     its reader raises.
     """
     head = _head(path)
     text = _text(head)
-    if head.startswith((b"CDF", b"\x89HDF")):
-        from gcs_windplan.wind.files.netcdf import open_netcdf
-
-        return open_netcdf(path)
-    if text.startswith(("{", "[")):
-        from gcs_windplan.wind.files.openmeteo import open_openmeteo
-
-        return open_openmeteo(path)
     _refuse_others(path, head, text)
-    if b"GRIB" in head:
-        from gcs_windplan.wind.files.grib import open_grib
-
-        return open_grib(path)
+    for one in FORMATS:
+        if one.recognises(head, text):
+            reader: Any = importlib.import_module(one.module)
+            index: AbstractContextManager[FieldIndex] = getattr(reader, one.opener)(path)
+            return index
     raise WindError(Problem(f"is of no format that is known here; {_READ}", file=path))
 
 
