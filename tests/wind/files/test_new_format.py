@@ -19,7 +19,7 @@ from gcs_windplan.wind.files import anyfile
 def open_toy(path: Path) -> Iterator[FieldIndex]:
     """One line: TOYWIND, then u and v [m/s], the same on a grid of 3 x 3 nodes at 10 and 200 m above ground."""
     _, *numbers = path.read_text().split()
-    grid = Grid(np.array([36.0, 36.5, 37.0]), np.array([-85.0, -84.25, -83.5]))
+    grid = Grid(np.array([36.0, 36.5, 37.0]), np.array([-85.0, -84.25, -83.5]), "toy")
 
     def reader(value: float):
         def read(rows: IntArray, columns: IntArray) -> FloatArray:
