@@ -25,6 +25,10 @@ class Finding:
     (from 1 on, home being 0), the `leg` (from 1 on), how far along the route (`distance`, level [m]) and the place;
     None where it concerns the whole mission. `value` and `limit` are in `unit`, `facts` what else the rule knows, in
     SI units. `message` is one sentence with the number, the limit and what to do; `wording.py` makes it of the rest.
+
+    >>> import gcs_windplan as gw
+    >>> gw.Finding("clearance", "danger", "leg 3 passes 12 m above ground", leg=3, value=12.0, limit=30.0, unit="m").leg
+    3
     """
 
     rule: str
@@ -227,7 +231,7 @@ class Assessment:
     >>> mission = gw.Mission(
     ...     start=(36.55, -84.30), goal=(36.56, -84.28), vehicle=gw.Vehicle(12.0), terrain="flat:300",
     ... )
-    >>> gw.review(mission).sums.clearance > 0
+    >>> gw.review(mission).totals.clearance > 0
     True
     """
 

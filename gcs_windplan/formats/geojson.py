@@ -39,7 +39,10 @@ def geojson_of(assessment: Assessment) -> dict[str, Any]:
         *(_area(outline, assessment) for outline in assessment.outlines),
         *(_rally(number, place) for number, place in enumerate(assessment.rally, start=1)),
     ]
-    return {"type": "FeatureCollection", "name": assessment.name, "features": features}
+    collection: dict[str, Any] = json_value(
+        {"type": "FeatureCollection", "name": assessment.name, "features": features}
+    )
+    return collection
 
 
 def on_earth(longitude: float, latitude: float) -> tuple[float, float]:

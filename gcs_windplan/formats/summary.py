@@ -24,7 +24,7 @@ def summary_of(plan: PlannedRoute) -> dict[str, Any]:
     `search` holds counts only: the same plan gives the same figures, whatever the machine.
     """
     request = plan.request
-    return {
+    figures = {
         "name": request.name,
         "cost": str(plan.choice),
         "cost_value": plan.cost,
@@ -49,6 +49,8 @@ def summary_of(plan: PlannedRoute) -> dict[str, Any]:
             "path_vertices": plan.effort.vertices,
         },
     }
+    value: dict[str, Any] = json_value(figures)
+    return value
 
 
 def _ensemble(plan: PlannedRoute) -> dict[str, Any] | None:

@@ -49,6 +49,14 @@ class Forecast:
     A forecast without an ensemble has one field, its member is None. `levels` are those of the fields' columns. `gusts`
     (times, rows, columns) [m/s] is one field a member, as `Columns` with the gust in place of u, or empty where the
     files have none. `notes` tell what was made of the files.
+
+    >>> import gcs_windplan as gw
+    >>> forecast = gw.read_forecast(
+    ...     "missions/wind/front_synthetic.nc", (36.55, -84.25), terrain="sample:jacksboro", members=[0, 1],
+    ...     departure="2026-05-01T08:00Z", lasting=3600.0, radius=2000.0,
+    ... )
+    >>> len(forecast.fields)
+    2
     """
 
     name: str

@@ -53,7 +53,7 @@ def test_a_token_ends_a_transfer_and_the_vehicle_is_told():
     PX4(world)
     session = Session(transport, clock=world.clock, cancel=token)
     peer = session.meet()
-    items = outgoing_items(survey(20), "mission", "px4")
+    items = outgoing_items(survey(20), "mission", peer.firmware)
     part = push_items(session, peer, "mission", items, watch=lambda done, total: token.cancel() if done >= 5 else None)
     assert (part.outcome.verdict, part.outcome.reason) == ("unknown", "interrupted")
     assert session.interrupted

@@ -26,7 +26,7 @@ from gcs_windplan.mission.firmware.firmware import (
     Transfers,
     stores,
 )
-from gcs_windplan.mission.firmware.storage import FLAG, FLOAT, NONE, UNREAD, YAW, Storage
+from gcs_windplan.mission.firmware.storage import FLAG, FLAG_OR_YAW, FLOAT, NONE, UNREAD, YAW, Storage
 from gcs_windplan.mission.firmware.whole_numbers import I16, U16, Nearest
 from gcs_windplan.vehicle import MotionProfile
 
@@ -46,8 +46,8 @@ def _plain(choices: tuple[int, ...] = ()) -> CommandRule:
 _COMMANDS: Final[dict[int, CommandRule]] = {
     mavlink.MAV_CMD_NAV_WAYPOINT: _place(FLOAT, FLOAT, NONE, YAW),  # time_inside, acceptance_radius, yaw
     mavlink.MAV_CMD_NAV_LOITER_UNLIM: _place(NONE, NONE, FLOAT, YAW),  # loiter_radius, yaw
-    # time_inside, force_heading, loiter_radius; what comes back of the yaw is loiter_exit_xtrack
-    mavlink.MAV_CMD_NAV_LOITER_TIME: _place(FLOAT, FLAG, FLOAT, FLAG),
+    # time_inside, force_heading, loiter_radius; what comes back of the yaw is loiter_exit_xtrack, of older PX4 the yaw
+    mavlink.MAV_CMD_NAV_LOITER_TIME: _place(FLOAT, FLAG, FLOAT, FLAG_OR_YAW),
     mavlink.MAV_CMD_NAV_LAND: _place(NONE, U16, NONE, YAW),  # land_precision
     mavlink.MAV_CMD_NAV_TAKEOFF: _place(NONE, NONE, NONE, YAW),
     mavlink.MAV_CMD_NAV_LOITER_TO_ALT: _place(FLAG, FLOAT, NONE, FLAG),

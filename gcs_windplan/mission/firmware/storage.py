@@ -116,6 +116,15 @@ class Flag(Storage):
 
 
 @dataclass(frozen=True, slots=True)
+class FlagOrYaw(Flag):
+    """1 for a number above zero, else 0, where older firmware gives back the angle itself."""
+
+    def retention(self, sent: float, held: float) -> Retention:
+        """See `Storage`."""
+        return "same" if YAW.retention(sent, held) == "same" else Flag.retention(self, sent, held)
+
+
+@dataclass(frozen=True, slots=True)
 class LowestBit(Flag):
     """1 for an odd whole number, else 0 (ArduPilot's ENGINE_CONTROL_OPTIONS)."""
 
@@ -184,3 +193,4 @@ class Unread(NotStored):
 
 FLOAT, HALF, YAW, FLAG, BIT0 = Storage(), HalfFloat(), Yaw(), Flag(), LowestBit()
 SIGN, LANDING_YAW, NONE, UNREAD = Sign(), LandingYaw(), NotStored(), Unread()
+FLAG_OR_YAW = FlagOrYaw()
