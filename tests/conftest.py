@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from gcs_windplan.cores import available_cores
 from tests.warming import compile_first
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -14,6 +15,12 @@ SHARED = ROOT.parent / "shared" / "data"
 
 settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("no clock")  # kernels compile in the first example, and a busy machine is no failure
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One worker more than cores: a third of the time workers wait for the commands that they started."""
+    return available_cores() + 1
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -10,7 +10,7 @@ from gcs_windplan.wind.field_index import Level
 from gcs_windplan.wind.inspect.grids import GridSummary
 from gcs_windplan.wind.inspect.inventory import FileSummary, Inventory, QuantitySummary
 from gcs_windplan.wind.inspect.sounding import LevelWind, Sounding, describe
-from gcs_windplan.wind.inspect.trial import Feasibility
+from gcs_windplan.wind.inspect.trial import PlanningTrial
 from gcs_windplan.wind.pairing import format_time
 
 _LISTED = 8  # levels, times
@@ -65,7 +65,7 @@ def grid_line(grid: GridSummary) -> str:
     return "; ".join(part for part in (named, _spacing(grid), _area(grid), turned) if part)
 
 
-def planning_line(planning: Feasibility) -> str:
+def planning_line(planning: PlanningTrial) -> str:
     """What planning makes of it."""
     if planning.obstacle:
         return f"stopped: {planning.obstacle}"
@@ -73,7 +73,7 @@ def planning_line(planning: Feasibility) -> str:
     return f"ready{'' if planning.all_tried else first}: {planning.uses}"
 
 
-def asks_line(planning: Feasibility) -> str:
+def asks_line(planning: PlanningTrial) -> str:
     """Which fields of the mission file it takes."""
     asks = []
     if planning.obstacle:

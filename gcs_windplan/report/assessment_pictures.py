@@ -10,7 +10,7 @@ from gcs_windplan.assessment import Assessment
 from gcs_windplan.report import map as maps
 from gcs_windplan.report import profile as profiles
 from gcs_windplan.report import words
-from gcs_windplan.report.labels import Sign
+from gcs_windplan.report.labels import MapSign
 from gcs_windplan.report.map import MapPlace, MapRoute, MapView, WindArrows
 from gcs_windplan.report.places import place_of
 from gcs_windplan.report.profile import ProfileView
@@ -45,7 +45,7 @@ def draw_assessment_profile(assessment: Assessment, dpi: int = 120) -> bytes:
     profile, limits = assessment.profile, assessment.limits
     at = [place_of(assessment, finding).sample for finding in assessment.findings]
     signs = [
-        Sign(str(i + 1), finding.severity, float(profile.distance[sample]), float(profile.altitude[sample]))
+        MapSign(str(i + 1), finding.severity, float(profile.distance[sample]), float(profile.altitude[sample]))
         for i, (finding, sample) in enumerate(zip(assessment.findings, at, strict=True))
         if sample is not None
     ]
@@ -64,13 +64,13 @@ def _route(assessment: Assessment, first: Assessment) -> MapRoute:
     return MapRoute(f"{assessment.name}: {words.clock(assessment.totals.seconds)} min", line, profile.ground_speed[1:])
 
 
-def _signs(letter: str, assessment: Assessment, first: Assessment) -> Iterator[Sign]:
+def _signs(letter: str, assessment: Assessment, first: Assessment) -> Iterator[MapSign]:
     """A numbered sign at each finding's place [m]."""
     for i, finding in enumerate(assessment.findings):
         place = place_of(assessment, finding)
         if place.latitude_deg is not None and place.longitude_deg is not None:
             x, y = first.frame.to_local(place.latitude_deg, place.longitude_deg)[0]
-            yield Sign(f"{letter}{i + 1}", finding.severity, float(x), float(y))
+            yield MapSign(f"{letter}{i + 1}", finding.severity, float(x), float(y))
 
 
 def _title(assessment: Assessment) -> str:

@@ -24,7 +24,7 @@ _TIE: Final = {"arrowstyle": "-", "lw": 0.9, "color": "#1c2430", "shrinkA": 0, "
 
 
 @dataclass(frozen=True, slots=True)
-class Sign:
+class MapSign:
     """A finding's sign: its number and severity, and where it is on the drawing, in the axes' own units."""
 
     text: str
@@ -93,7 +93,7 @@ _BESIDE_STOP: Final = rings(9.0, 1, first=45.0)
 _BESIDE_SITE: Final = rings(11.0, 2, first=-45.0)
 
 
-def draw_sign(placer: LabelPlacer, sign: Sign) -> None:
+def draw_sign(placer: LabelPlacer, sign: MapSign) -> None:
     """A finding's sign with its number, where it belongs or tied to it from beside."""
     axes, place = placer.axes, (sign.x, sign.y)
     marker, fill, ink, centre = _SIGNS[sign.severity]

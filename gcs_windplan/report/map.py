@@ -15,7 +15,7 @@ from matplotlib.patheffects import Normal, Stroke
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.assessment import Outline
-from gcs_windplan.report.labels import LabelPlacer, Sign, draw_name, draw_number, draw_sign
+from gcs_windplan.report.labels import LabelPlacer, MapSign, draw_name, draw_number, draw_sign
 from gcs_windplan.report.png import png_bytes
 from gcs_windplan.report.relief import Ground, shade
 from gcs_windplan.terrain import Extent
@@ -87,7 +87,7 @@ class MapView:
     areas: Sequence[Outline] = ()
     solids: Sequence[FloatArray] = ()
     places: Sequence[MapPlace] = ()
-    signs: Sequence[Sign] = ()
+    signs: Sequence[MapSign] = ()
 
 
 def draw_view(view: MapView, dpi: int = 120) -> bytes:
@@ -107,7 +107,7 @@ def draw_view(view: MapView, dpi: int = 120) -> bytes:
         beside.remove()
         panel.draw_side_by_side(view.routes)
     for sign in view.signs:
-        draw_sign(panel.placer, Sign(sign.text, sign.severity, sign.x / _KM, sign.y / _KM))
+        draw_sign(panel.placer, MapSign(sign.text, sign.severity, sign.x / _KM, sign.y / _KM))
     panel.draw_places(view.places)
     return png_bytes(figure, dpi)
 

@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from gcs_windplan.arrays import FloatArray
-from gcs_windplan.report.labels import LabelPlacer, Sign, draw_sign
+from gcs_windplan.report.labels import LabelPlacer, MapSign, draw_sign
 from gcs_windplan.report.png import png_bytes
 
 
@@ -35,7 +35,7 @@ class ProfileView:
     airspeed: FloatArray
     wind_along: FloatArray
     marks: bool = True
-    signs: Sequence[Sign] = ()
+    signs: Sequence[MapSign] = ()
 
 
 def draw_view(view: ProfileView, dpi: int = 120) -> bytes:
@@ -46,7 +46,7 @@ def draw_view(view: ProfileView, dpi: int = 120) -> bytes:
         _draw_speeds(speeds, view)
         placer = LabelPlacer(heights)
         for sign in view.signs:
-            draw_sign(placer, Sign(sign.text, sign.severity, sign.x / 1000, sign.y))
+            draw_sign(placer, MapSign(sign.text, sign.severity, sign.x / 1000, sign.y))
     return png_bytes(figure, dpi)
 
 

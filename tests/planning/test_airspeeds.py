@@ -22,11 +22,11 @@ AIRFRAMES = ["small_quadcopter", "large_multirotor", "fixed_wing"]
 
 
 def brute_force(points, wind, vehicle, power, between, cost_index=0.0, begin=0.0):
-    """Each leg at every 2 cm/s, one leg after the other, the cheapest kept."""
+    """Each leg at every 5 cm/s, half of what is allowed, one leg after the other, the cheapest kept."""
     best, clock = [], begin
     for start, end in pairwise(points):
         leg, least = np.stack([start, end]), (math.inf, math.nan, clock)
-        for airspeed in np.arange(between[0], between[1] + 1e-9, 0.02):
+        for airspeed in np.arange(between[0], between[1] + 1e-9, 0.05):
             flown = replace(vehicle, airspeed=float(airspeed))
             times = fly_legs(leg, wind, flown, clock)[1]
             if not np.isfinite(times[-1]):

@@ -89,7 +89,9 @@ def test_a_curtain_between_the_nodes_is_passed_through_its_gap(graph, cost):
 @pytest.mark.parametrize("graph", [Uniform(60.0), Roadmap(nodes=700, seed=3)])
 def test_a_curtain_without_a_gap_leaves_no_route_and_the_limit_is_the_reason(graph):
     asked = request(wind=Curtain(gap=-5.0), vehicle=gw.Vehicle(14.0), graph=graph, limits=Limits(wind=10.0))
-    with pytest.raises(NoRouteError, match=r"cut by wind limit \(limits\.wind, 10 m/s\): \d+ legs.* A higher limit"):
+    with pytest.raises(
+        NoRouteError, match=r"blocked by wind limit \(limits\.wind, 10 m/s\): \d+ legs.* A higher limit"
+    ):
         plan_route(asked)
 
 

@@ -221,7 +221,7 @@ def test_a_via_behind_a_gale_is_named(strength, way):
     asked = request(
         wind=Ring(strength), via=vias((-300.0, 0.0), (300.0, 300.0), (0.0, -300.0)), order="free", graph=Uniform(50.0)
     )
-    with pytest.raises(NoRouteError, match=rf"^via\.1: cannot be {way} on any way: no route: .* cut by wind"):
+    with pytest.raises(NoRouteError, match=rf"^via\.1: cannot be {way} on any way: no route: .* blocked by wind"):
         plan_route(asked)
 
 

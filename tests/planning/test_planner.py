@@ -63,7 +63,7 @@ def test_a_route_keeps_every_limit(graph, cost, gallery):
     assert last.seconds == pytest.approx(plan.totals.seconds)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 10_000), strength=st.floats(0, 6))
 def test_least_time_is_never_slower_than_least_distance(seed, strength):
     asked = request(rough_dem(seed), wind=WavyWind(seed, strength=strength))

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from gcs_windplan.errors import InputError, MissionFileError, Problem
 from gcs_windplan.jobs.missionfile.marks import MarkedError, Marks, Values
 from gcs_windplan.jobs.missionfile.parsing import _order, _schema_problems, _yaml_problems, marks_of
-from gcs_windplan.jobs.missionfile.section import Fields, Finding, Section
+from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section
 from gcs_windplan.jobs.missionfile.values import (
     AIRSPEED,
     Acceleration,
@@ -76,10 +76,10 @@ class MultirotorModel(Section):
     density: AirDensity = Field(default=1.225, description="of the air in which the coefficients were found")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Hovering that takes no power."""
         if fields.get("k1") == 0 and fields.get("c2") == 0:
-            yield Finding(("c2",), "cannot be 0 with k1 at 0 as well; hovering takes power")
+            yield SchemaProblem(("c2",), "cannot be 0 with k1 at 0 as well; hovering takes power")
 
 
 class FixedWingModel(Section):
@@ -114,11 +114,13 @@ class PowerTableModel(Section):
     climb_efficiency: Share = Field(default=0.5, description="weight times climb rate by the power that it adds")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Airspeeds that do not rise."""
         for row, (slower, faster) in enumerate(pairwise(_measured_airspeeds(fields)), 1):
             if slower is not None and faster is not None and not faster > slower:
-                yield Finding(("measured", row, "airspeed"), f"must rise from row to row; the one before is {slower:g}")
+                yield SchemaProblem(
+                    ("measured", row, "airspeed"), f"must rise from row to row; the one before is {slower:g}"
+                )
 
 
 class PowerChoiceModel(Section):
@@ -168,12 +170,12 @@ class AirframeModel(Section):
     power: PowerSection = Field(description="what it draws in flight", examples=["{model: multirotor, k1: ...}"])
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Speeds and a power model that do not go together."""
         power = fields.get("power")
         cruise, fastest = (AIRSPEED.read_or_none(fields.get(name)) for name in ("airspeed", "maximum_airspeed"))
         if cruise is not None and fastest is not None and fastest < cruise:
-            yield Finding(("maximum_airspeed",), f"is less than the cruise airspeed of {cruise:g} m/s")
+            yield SchemaProblem(("maximum_airspeed",), f"is less than the cruise airspeed of {cruise:g} m/s")
         if not isinstance(power, dict):
             return
         winged = fields.get("type", "multicopter") == "fixed-wing"
@@ -258,33 +260,33 @@ def _power(model: PowerSection, mass: float) -> PowerModel:
             return PowerTable(mass, speeds, watts, model.density, model.climb_efficiency)
 
 
-def _wrong_kind(named: object, winged: bool) -> Iterator[Finding]:
+def _wrong_kind(named: object, winged: bool) -> Iterator[SchemaProblem]:
     """A power model of another kind of airframe."""
     if winged and named in ("rotary-wing", "multirotor"):
-        yield Finding(("power", "model"), "is one of rotors, but a fixed-wing flies; write fixed-wing or table")
+        yield SchemaProblem(("power", "model"), "is one of rotors, but a fixed-wing flies; write fixed-wing or table")
     if not winged and named == "fixed-wing":
         message = "is one of wings, but a multicopter flies; write 'type: fixed-wing', or another model"
-        yield Finding(("power", "model"), message)
+        yield SchemaProblem(("power", "model"), message)
 
 
-def _stalled(power: Fields, cruise: float | None) -> Iterator[Finding]:
+def _stalled(power: Fields, cruise: float | None) -> Iterator[SchemaProblem]:
     """A cruise below the stall."""
     stall = AIRSPEED.read_or_none(power.get("stall_airspeed"))
     if stall is not None and cruise is not None and stall > cruise:
-        yield Finding(("power", "stall_airspeed"), f"is more than the cruise airspeed of {cruise:g} m/s")
+        yield SchemaProblem(("power", "stall_airspeed"), f"is more than the cruise airspeed of {cruise:g} m/s")
 
 
-def _not_measured(power: Fields, slowest: float | None, fastest: float | None) -> Iterator[Finding]:
+def _not_measured(power: Fields, slowest: float | None, fastest: float | None) -> Iterator[SchemaProblem]:
     """A table that does not reach over the airspeeds that are flown."""
     known = _measured_airspeeds(power) if power.get("model") == "table" else []
     if len(known) < 2:
         return
     first, last = known[0], known[-1]
     if first is not None and slowest is not None and first > slowest:
-        yield Finding(("power", "measured", 0, "airspeed"), f"the table must begin at {slowest:g} m/s or below")
+        yield SchemaProblem(("power", "measured", 0, "airspeed"), f"the table must begin at {slowest:g} m/s or below")
     if last is not None and fastest is not None and last < fastest:
         place = ("power", "measured", len(known) - 1, "airspeed")
-        yield Finding(place, f"the table must reach the maximum airspeed of {fastest:g} m/s")
+        yield SchemaProblem(place, f"the table must reach the maximum airspeed of {fastest:g} m/s")
 
 
 def _measured_airspeeds(power: Fields) -> list[float | None]:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from gcs_windplan.jobs.missionfile.section import Fields, Finding, Section, at_most_one, exactly_one
+from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section, at_most_one, exactly_one
 from gcs_windplan.jobs.missionfile.values import (
     SIGNED_LENGTH,
     Flag,
@@ -42,11 +42,11 @@ class PolygonModel(Section):
         return {"latitude_longitude": data} if isinstance(data, list | tuple) else data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Both kinds of corners, or none."""
         names = ("latitude_longitude", "east_north")
         if not any(name in fields for name in names):
-            yield Finding((), f"corners are missing; {cls.expects} belongs here")
+            yield SchemaProblem((), f"corners are missing; {cls.expects} belongs here")
         yield from at_most_one(fields, *names)
 
     @classmethod
@@ -83,12 +83,12 @@ class AreaModel(Section):
     )
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """A polygon and a circle, or neither; a ceiling that is not above the floor."""
         yield from exactly_one(fields, "polygon", "circle")
         floor, ceiling = (SIGNED_LENGTH.read_or_none(fields.get(name)) for name in ("floor", "ceiling"))
         if floor is not None and ceiling is not None and ceiling <= floor:
-            yield Finding(("ceiling",), f"{ceiling:g} m is not above the floor, {floor:g} m")
+            yield SchemaProblem(("ceiling",), f"{ceiling:g} m is not above the floor, {floor:g} m")
 
 
 class FenceModel(Section):

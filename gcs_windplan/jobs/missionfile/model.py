@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema
 from gcs_windplan.jobs.missionfile.areas import FenceModel
 from gcs_windplan.jobs.missionfile.limits import LimitsModel
 from gcs_windplan.jobs.missionfile.rules import DEFAULT_CLEARANCE, mission_contradictions
-from gcs_windplan.jobs.missionfile.section import Fields, Finding, Section, at_most_one, suggestion
+from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section, at_most_one, suggestion
 from gcs_windplan.jobs.missionfile.values import (
     WEIGHT,
     AirspeedOrFree,
@@ -52,14 +52,14 @@ class VehicleModel(Section):
     )
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """No speed from anywhere; a misspelt one is told anyway."""
         known = list(cls.model_fields)
         meant = {name if name in known else suggestion(name, known) for name in fields}
         if not meant & {"airspeed", "airframe"}:
-            yield Finding(("airspeed",), "is missing; add it, for example 'airspeed: 12 m/s'", at_key=True)
+            yield SchemaProblem(("airspeed",), "is missing; add it, for example 'airspeed: 12 m/s'", at_key=True)
         if fields.get("airspeed") == "free" and "airframe" not in meant:
-            yield Finding(("airspeed",), "to be free to choose asks for the vehicle's power; name its `airframe`")
+            yield SchemaProblem(("airspeed",), "to be free to choose asks for the vehicle's power; name its `airframe`")
 
 
 class CostModel(Section):
@@ -80,14 +80,14 @@ class CostModel(Section):
         return {"name": data} if isinstance(data, str) else data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Weights of a cost that has none, or only zeros."""
         weights = [name for name in ("distance", "angle") if name in fields]
         if fields.get("name") in ("distance", "angle", "time", "energy"):
             for weight in weights:
-                yield Finding((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
+                yield SchemaProblem((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
         elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
-            yield Finding(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
+            yield SchemaProblem(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -139,7 +139,7 @@ class GraphModel(Section):
         return data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Both kinds of graph."""
         yield from at_most_one(fields, "uniform", "prm")
 
@@ -206,6 +206,6 @@ class MissionModel(Section):
     export: ExportModel = Field(default=ExportModel(), description="what is written")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """What sections say against each other."""
         return mission_contradictions(fields)

@@ -11,7 +11,7 @@ from itertools import combinations, pairwise
 from typing import Final
 
 from gcs_windplan.errors import Problem
-from gcs_windplan.jobs.missionfile.section import Fields, Finding, Path
+from gcs_windplan.jobs.missionfile.section import Fields, Path, SchemaProblem
 from gcs_windplan.jobs.missionfile.values import CLEARANCE, HEIGHT, LATITUDE, LONGITUDE, SIGNED_LENGTH
 from gcs_windplan.planning.contradictions import (
     height_problems,
@@ -27,7 +27,7 @@ _LEAST_MARGIN: Final = 2.0  # [m] ArduPilot's FENCE_MARGIN; by as much ArduCopte
 _MOST_CORNERS: Final = 255  # ArduPilot counts them in one byte (AC_PolyFenceItem)
 
 
-def mission_contradictions(fields: Fields) -> Iterator[Finding]:
+def mission_contradictions(fields: Fields) -> Iterator[SchemaProblem]:
     """Everything that the sections of a mission say against each other."""
     clearance = CLEARANCE.read_or_none(fields.get("clearance", DEFAULT_CLEARANCE))
     max_height = CLEARANCE.read_or_none(_section(fields, "limits").get("max_height"))
@@ -40,33 +40,33 @@ def mission_contradictions(fields: Fields) -> Iterator[Finding]:
     yield from fence_contradictions(fields)
     yield from _limits_without_measure(fields)
     if "robust" in fields and "members" not in _section(fields, "wind"):
-        yield Finding(("robust",), "belongs only beside wind.members; leave it out", at_key=True)
+        yield SchemaProblem(("robust",), "belongs only beside wind.members; leave it out", at_key=True)
 
 
-def _found(problems: Iterable[Problem], at_key: bool = False) -> Iterator[Finding]:
+def _found(problems: Iterable[Problem], at_key: bool = False) -> Iterator[SchemaProblem]:
     """Problems as findings."""
     for problem in problems:
         path = (int(part) if part.isdigit() else part for part in str(problem.field).split("."))
-        yield Finding(tuple(path), problem.message, at_key)
+        yield SchemaProblem(tuple(path), problem.message, at_key)
 
 
-def _limits_without_measure(fields: Fields) -> Iterator[Finding]:
+def _limits_without_measure(fields: Fields) -> Iterator[SchemaProblem]:
     """Limits of what nobody would know: a battery without an airframe, gusts without a forecast."""
     limits, airframe = _section(fields, "limits"), "airframe" in _section(fields, "vehicle")
     unknown = limits_without_airframe(battery="battery" in limits, reserve="reserve" in limits, airframe=airframe)
     yield from _found(unknown, at_key=True)
     if "gust" in limits and "forecast" not in _section(fields, "wind"):
-        yield Finding(("limits", "gust"), "needs wind.forecast; no other wind has gusts", at_key=True)
+        yield SchemaProblem(("limits", "gust"), "needs wind.forecast; no other wind has gusts", at_key=True)
 
 
-def _sites_outside(fields: Fields, clearance: float | None, max_height: float | None) -> Iterator[Finding]:
+def _sites_outside(fields: Fields, clearance: float | None, max_height: float | None) -> Iterator[SchemaProblem]:
     for path, site in [*_sites(fields), *_beside(fields)]:
         height = HEIGHT.read_or_none(site.get("height"))
         if height is not None and (complaint := outside_limits(height, clearance, max_height)):
-            yield Finding((*path, "height"), complaint)
+            yield SchemaProblem((*path, "height"), complaint)
 
 
-def _local_without_origin(fields: Fields) -> Iterator[Finding]:
+def _local_without_origin(fields: Fields) -> Iterator[SchemaProblem]:
     """Local places mean nothing on a DEM whose file does not say where the local origin is.
 
     A mesh or a surface without an origin is a problem of the terrain's own.
@@ -81,20 +81,22 @@ def _local_without_origin(fields: Fields) -> Iterator[Finding]:
         if "at" in obstacle:
             yield from _local_place(("obstacles", index, "at"), _section(obstacle, "at"), advice)
         else:
-            yield Finding(("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}")
+            yield SchemaProblem(
+                ("obstacles", index), f"an obstacle without 'at' stands at the local origin and {advice}"
+            )
     for path, area in _areas(fields):
         if "east_north" in _section(area, "polygon"):
-            yield Finding((*path, "polygon", "east_north"), advice, at_key=True)
+            yield SchemaProblem((*path, "polygon", "east_north"), advice, at_key=True)
         yield from _local_place((*path, "circle"), _section(area, "circle"), advice)
 
 
-def _local_place(path: Path, place: Fields, advice: str) -> Iterator[Finding]:
+def _local_place(path: Path, place: Fields, advice: str) -> Iterator[SchemaProblem]:
     local = [name for name in ("east", "north") if name in place]
     if local and not ("latitude" in place or "longitude" in place):
-        yield Finding((*path, local[0]), advice, at_key=True)
+        yield SchemaProblem((*path, local[0]), advice, at_key=True)
 
 
-def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
+def _equal_neighbours(fields: Fields) -> Iterator[SchemaProblem]:
     """Sites at the same place that follow each other, or may do so in another order; the goal comes last."""
     sites = [(path, _position(site)) for path, site in _sites(fields)]
     if fields.get("order") == "free" and len(sites) > 3:
@@ -105,7 +107,7 @@ def _equal_neighbours(fields: Fields) -> Iterator[Finding]:
     for (before, here), (path, there) in pairs:
         if here and there and _same(here, there):
             name = ".".join(str(part) for part in before)
-            yield Finding(path, f"is the same place as {name}; there is nothing to fly in between")
+            yield SchemaProblem(path, f"is the same place as {name}; there is nothing to fly in between")
 
 
 def _same(here: tuple[str, float, float], there: tuple[str, float, float]) -> bool:
@@ -140,7 +142,7 @@ def _beside(fields: Fields) -> Iterator[tuple[Path, Fields]]:
     yield ("fence", "return_point"), _section(_section(fields, "fence"), "return_point")
 
 
-def fence_contradictions(fields: Fields) -> Iterator[Finding]:
+def fence_contradictions(fields: Fields) -> Iterator[SchemaProblem]:
     """What the autopilot's fence cannot hold, and what would not reach the vehicle."""
     fenced = [(path, area) for path, area in _areas(fields) if area.get("fence") is True]
     for path, area in fenced:
@@ -148,27 +150,27 @@ def fence_contradictions(fields: Fields) -> Iterator[Finding]:
     back = "return_point" in _section(fields, "fence")
     if back and not fenced:
         advice = "there is no fence to return from: mark an area in limits with 'fence: true'"
-        yield Finding(("fence", "return_point"), advice, at_key=True)
+        yield SchemaProblem(("fence", "return_point"), advice, at_key=True)
     if (fenced or back or fields.get("rally")) and _section(fields, "export").get("plan") is False:
-        yield Finding(("export", "plan"), "fence and rally points fit only into a .plan file: leave this out")
+        yield SchemaProblem(("export", "plan"), "fence and rally points fit only into a .plan file: leave this out")
 
 
-def _unfit_for_fence(path: Path, area: Fields, fields: Fields) -> Iterator[Finding]:
+def _unfit_for_fence(path: Path, area: Fields, fields: Fields) -> Iterator[SchemaProblem]:
     """An area that the fence would hold otherwise than the file says."""
     for limit in ("floor", "ceiling") if "keep_out" in path else ():
         if limit in area:
             text = f"a fence has no heights and would forbid what lies beyond the {limit} too"
-            yield Finding((*path, limit), f"{text}: leave out either this or 'fence: true'", at_key=True)
+            yield SchemaProblem((*path, limit), f"{text}: leave out either this or 'fence: true'", at_key=True)
     margin = HEIGHT.read_or_none(area.get("margin"))
     if margin is not None and margin < _LEAST_MARGIN:
         text = (
             f"{margin:g} m is too little beside a fence that the vehicle must not touch: at least {_LEAST_MARGIN:g} m"
         )
-        yield Finding((*path, "margin"), text)
+        yield SchemaProblem((*path, "margin"), text)
     corners = _corners(area)
     if _section(fields, "vehicle").get("autopilot", "ardupilot") == "ardupilot" and corners > _MOST_CORNERS:
         text = f"{corners} corners are more than the {_MOST_CORNERS} of ArduPilot's fence polygons: simplify it"
-        yield Finding((*path, "polygon"), text)
+        yield SchemaProblem((*path, "polygon"), text)
 
 
 def _corners(area: Fields) -> int:

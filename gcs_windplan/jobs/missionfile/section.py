@@ -21,7 +21,7 @@ _AT_KEY = "plain_at_key"
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class SchemaProblem:
     """What is wrong below a section, in plain language; `path` starts there.
 
     `at_key` points to the field's name instead of its value.
@@ -50,7 +50,7 @@ class Section(BaseModel):
         return data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """What fields say against each other; they may be wrong by themselves."""
         return iter(())
 
@@ -70,7 +70,7 @@ class Section(BaseModel):
         return model
 
 
-def findings(error: ValidationError) -> list[Finding]:
+def findings(error: ValidationError) -> list[SchemaProblem]:
     """What a failed check of a section found."""
     return [_finding(details, Section) for details in error.errors(include_url=False)]
 
@@ -80,24 +80,24 @@ def known_fields(section: type[BaseModel]) -> list[str]:
     return [info.alias or name for name, info in section.model_fields.items()]
 
 
-def exactly_one(fields: Fields, *names: str) -> Iterator[Finding]:
+def exactly_one(fields: Fields, *names: str) -> Iterator[SchemaProblem]:
     """A finding unless exactly one of the fields is there."""
     if not any(name in fields for name in names):
-        yield Finding((), f"one of {_listed(names)} is missing")
+        yield SchemaProblem((), f"one of {_listed(names)} is missing")
     yield from at_most_one(fields, *names)
 
 
-def at_most_one(fields: Fields, *names: str) -> Iterator[Finding]:
+def at_most_one(fields: Fields, *names: str) -> Iterator[SchemaProblem]:
     """A finding for each of the fields beside the first that is there."""
     first, *others = [name for name in fields if name in names] or [""]
     for other in others:
-        yield Finding((other,), f"cannot stand beside '{first}'; keep one of {_listed(names)}", at_key=True)
+        yield SchemaProblem((other,), f"cannot stand beside '{first}'; keep one of {_listed(names)}", at_key=True)
 
 
-def only_with(fields: Fields, name: str, *partners: str) -> Iterator[Finding]:
+def only_with(fields: Fields, name: str, *partners: str) -> Iterator[SchemaProblem]:
     """A finding if the field is there and none of its partners."""
     if name in fields and not any(partner in fields for partner in partners):
-        yield Finding((name,), f"belongs only beside {_listed(partners)}; leave it out", at_key=True)
+        yield SchemaProblem((name,), f"belongs only beside {_listed(partners)}; leave it out", at_key=True)
 
 
 def suggestion(word: str, known: list[str]) -> str | None:
@@ -106,13 +106,13 @@ def suggestion(word: str, known: list[str]) -> str | None:
     return close[0] if close else None
 
 
-def _finding(error: ErrorDetails, section: type[Section]) -> Finding:
+def _finding(error: ErrorDetails, section: type[Section]) -> SchemaProblem:
     kind, path = error["type"], error["loc"]
     if kind in (_PLAIN, _AT_KEY):
-        return Finding(path, error["ctx"]["message"], kind == _AT_KEY)
+        return SchemaProblem(path, error["ctx"]["message"], kind == _AT_KEY)
     if kind == "missing" and isinstance(path[-1], int):  # of a pair
-        return Finding(path[:-1], "two values are expected, as in [38.1, 23.7]")
-    return Finding(path, _plain_message(error, section), kind == "extra_forbidden")
+        return SchemaProblem(path[:-1], "two values are expected, as in [38.1, 23.7]")
+    return SchemaProblem(path, _plain_message(error, section), kind == "extra_forbidden")
 
 
 def _follows(error: ErrorDetails, errors: list[ErrorDetails], section: type[Section]) -> bool:
@@ -128,7 +128,7 @@ def _follows(error: ErrorDetails, errors: list[ErrorDetails], section: type[Sect
     return error["type"] == "missing" and error["loc"][-1] in [suggestion(word, known) for word in misspelt]
 
 
-def _details(finding: Finding) -> InitErrorDetails:
+def _details(finding: SchemaProblem) -> InitErrorDetails:
     kind = PydanticCustomError(_AT_KEY if finding.at_key else _PLAIN, "{message}", {"message": finding.message})
     return InitErrorDetails(type=kind, loc=finding.path, input=None)
 

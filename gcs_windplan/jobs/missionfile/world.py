@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final, Literal
 from pydantic import ConfigDict, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from gcs_windplan.jobs.missionfile.section import Fields, Finding, Section, at_most_one, exactly_one, only_with
+from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section, at_most_one, exactly_one, only_with
 from gcs_windplan.jobs.missionfile.values import (
     CLEARANCE,
     Calm,
@@ -49,19 +49,19 @@ class PlaceModel(Section):
     north: Length | None = Field(default=None, description="north of the local origin, with `east`")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Anything but exactly one full pair of coordinates."""
         geographic = [name for name in ("latitude", "longitude") if name in fields]
         local = [name for name in ("east", "north") if name in fields]
         if geographic and local:
-            yield Finding((local[0],), "cannot stand beside latitude and longitude; keep one pair", at_key=True)
+            yield SchemaProblem((local[0],), "cannot stand beside latitude and longitude; keep one pair", at_key=True)
         elif not geographic and not local:
-            yield Finding((), "a place needs latitude and longitude, or east and north")
+            yield SchemaProblem((), "a place needs latitude and longitude, or east and north")
         else:
             pair = ("latitude", "longitude") if geographic else ("east", "north")
             for name in pair:
                 if name not in fields:
-                    yield Finding((name,), f"is missing beside '{(geographic + local)[0]}'")
+                    yield SchemaProblem((name,), f"is missing beside '{(geographic + local)[0]}'")
 
 
 class SiteModel(PlaceModel):
@@ -71,7 +71,7 @@ class SiteModel(PlaceModel):
     altitude: Length | None = Field(default=None, description="above mean sea level; beside it no `height`")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Those of a place, and two vertical positions."""
         yield from super().contradictions(fields)
         yield from at_most_one(fields, "height", "altitude")
@@ -104,16 +104,16 @@ class SurfaceModel(Section):
     hills: tuple[HillModel, ...] = Field(default=(), description="hills, added up; none leaves flat ground")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Cells larger than the surface, or too many of them."""
         size, cell = (CLEARANCE.read_or_none(fields.get(name)) for name in ("size", "cell"))
         if size is None or cell is None:
             return
         if cell > size:
-            yield Finding(("cell",), f"a cell of {cell:g} m is larger than the surface of {size:g} m")
+            yield SchemaProblem(("cell",), f"a cell of {cell:g} m is larger than the surface of {size:g} m")
         elif size / cell > _MOST_CELLS:
             right = size / _MOST_CELLS
-            yield Finding(("cell",), f"more than {_MOST_CELLS} cells along a side; write at least {right:g} m")
+            yield SchemaProblem(("cell",), f"more than {_MOST_CELLS} cells along a side; write at least {right:g} m")
 
 
 class TerrainModel(Section):
@@ -148,14 +148,14 @@ class TerrainModel(Section):
         return data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Several sources of heights or none, an origin that is needed, fields without their partner."""
         yield from exactly_one(fields, "dem", "sample", "mesh", "surface")
         yield from only_with(fields, "nodata", "dem")
         shape = next((name for name in ("mesh", "surface") if name in fields), None)
         if shape and "origin" not in fields:
             example = "origin: {latitude: 38.1, longitude: 23.7}"
-            yield Finding(("origin",), f"is missing; a {shape} needs it, for example '{example}'")
+            yield SchemaProblem(("origin",), f"is missing; a {shape} needs it, for example '{example}'")
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -198,10 +198,10 @@ class PaperWindModel(Section):
     scale: PositiveLength = Field(default=1.0, description="length of one unit of the paper's plane")
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """A reading of a field that has only one."""
         if "reading" in fields and fields.get("field") in ("diverging", "rotation"):
-            yield Finding(("reading",), "belongs only beside 'field: jet'; leave it out", at_key=True)
+            yield SchemaProblem(("reading",), "belongs only beside 'field: jet'; leave it out", at_key=True)
 
 
 class ProfileModel(Section):
@@ -219,7 +219,7 @@ class ProfileModel(Section):
     )
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """The other law's field, this law's field missing, a reference within the roughness."""
         own, other = {"power": ("exponent", "roughness"), "log": ("roughness", "exponent")}.get(
             str(fields.get("law")), (None, None)
@@ -228,13 +228,13 @@ class ProfileModel(Section):
             return
         if own not in fields:
             example = {"exponent": "0.143", "roughness": "0.1 m"}[own]
-            yield Finding((own,), f"is missing; this law needs it, for example '{own}: {example}'")
+            yield SchemaProblem((own,), f"is missing; this law needs it, for example '{own}: {example}'")
         if other in fields:
-            yield Finding((str(other),), "belongs to the other law; leave it out", at_key=True)
+            yield SchemaProblem((str(other),), "belongs to the other law; leave it out", at_key=True)
         roughness = CLEARANCE.read_or_none(fields.get("roughness"))
         reference = CLEARANCE.read_or_none(fields.get("reference_height", 10.0))
         if own == "roughness" and roughness and reference and roughness >= reference:
-            yield Finding(("roughness",), f"must be below the reference height of {reference:g} m")
+            yield SchemaProblem(("roughness",), f"must be below the reference height of {reference:g} m")
 
 
 class WindModel(Section):
@@ -271,7 +271,7 @@ class WindModel(Section):
         return data
 
     @classmethod
-    def contradictions(cls, fields: Fields) -> Iterator[Finding]:
+    def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Several winds or none, fields without their partner, members twice."""
         yield from exactly_one(fields, "calm", "constant", "paper", "forecast")
         yield from only_with(fields, "extend", "forecast")
@@ -279,9 +279,9 @@ class WindModel(Section):
         yield from only_with(fields, "profile", "constant", "paper", "forecast")
         members = fields.get("members")
         if isinstance(members, list | tuple) and not members:
-            yield Finding(("members",), "names no member; write `all`, or a list of their numbers")
+            yield SchemaProblem(("members",), "names no member; write `all`, or a list of their numbers")
         if isinstance(members, list | tuple) and len(set(map(str, members))) < len(members):
-            yield Finding(("members",), "names a member twice")
+            yield SchemaProblem(("members",), "names a member twice")
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:

@@ -223,7 +223,7 @@ def _prm_border(veil: PrmVeil, reached: IntArray) -> tuple[IntArray, FlagArray]:
 
 
 def _count(flags: FlagArray) -> dict[str, int]:
-    """How many legs break what, most first; a leg that is clear and yet not taken is cut by the wind."""
+    """How many legs break what, most first; a leg that is clear and yet not taken is blocked by the wind."""
     counts = {name: int(np.count_nonzero(flags & flag)) for flag, name in BREACHES.items()}
     counts[_CUT_BY_WIND] = int(np.count_nonzero(flags == 0))
     return {name: count for name, count in sorted(counts.items(), key=lambda item: -item[1]) if count}

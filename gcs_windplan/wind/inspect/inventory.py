@@ -15,7 +15,7 @@ import numpy as np
 from gcs_windplan.errors import WindError
 from gcs_windplan.wind.field_index import Field2D, FieldIndex, Grid, Level, Quantity
 from gcs_windplan.wind.inspect.grids import GridSummary, summary_of
-from gcs_windplan.wind.inspect.trial import Feasibility, try_planning
+from gcs_windplan.wind.inspect.trial import PlanningTrial, try_planning
 from gcs_windplan.wind.pairing import pair_up
 
 WIND: tuple[Quantity, ...] = ("u", "v", "speed", "direction")
@@ -88,7 +88,7 @@ class Inventory:
     grids: tuple[GridSummary, ...]
     fields_read: int
     broken: tuple[str, ...]
-    planning: Feasibility
+    planning: PlanningTrial
 
 
 def take_inventory(paths: Sequence[Path], indexes: Sequence[FieldIndex]) -> Inventory:

@@ -21,7 +21,7 @@ POINT: Box = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Feasibility:
+class PlanningTrial:
     """What stops planning (`obstacle`), in planning's words, or else what it would use (`uses`).
 
     `departures` are the first and the last that may be chosen [s since 1970], None where the files tell no time.
@@ -36,7 +36,7 @@ class Feasibility:
     all_tried: bool
 
 
-def try_planning(indexes: Sequence[FieldIndex], all_of_them: bool) -> Feasibility:
+def try_planning(indexes: Sequence[FieldIndex], all_of_them: bool) -> PlanningTrial:
     """Plans, as far as the wind goes: with all times and members, or the first of each."""
     departures: tuple[float, float] | None = None
     members: tuple[int, ...] = ()
@@ -56,9 +56,9 @@ def try_planning(indexes: Sequence[FieldIndex], all_of_them: bool) -> Feasibilit
                 members=(members if all_of_them else members[:1]) or None,
             ),
         )
-        return Feasibility("", forecast.name, departures, members, all_of_them)
+        return PlanningTrial("", forecast.name, departures, members, all_of_them)
     except WindError as error:
-        return Feasibility(str(error), "", departures, members, all_of_them)
+        return PlanningTrial(str(error), "", departures, members, all_of_them)
 
 
 def members_to_choose(pairs: Sequence[WindPair]) -> tuple[int, ...]:
