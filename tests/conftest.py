@@ -17,6 +17,12 @@ settings.register_profile("no clock", deadline=None, suppress_health_check=[Heal
 settings.load_profile("no clock")  # kernels compile in the first example, and a busy machine is no failure
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Files go to the workers as they stand: by number of tests the slow ones, which have few, would come last."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     """One worker more than cores: a third of the time workers wait for the commands that they started."""

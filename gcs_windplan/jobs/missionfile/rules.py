@@ -24,7 +24,6 @@ DEFAULT_CLEARANCE: Final = 30.0  # [m]
 _SAME_DEGREES: Final = 1e-7  # about a centimetre, and MAVLink's resolution of a coordinate
 _SAME_METRES: Final = 0.01
 _LEAST_MARGIN: Final = 2.0  # [m] ArduPilot's FENCE_MARGIN; by as much ArduCopter cuts corners (measured)
-_MOST_CORNERS: Final = 255  # ArduPilot counts them in one byte (AC_PolyFenceItem)
 
 
 def mission_contradictions(fields: Fields) -> Iterator[SchemaProblem]:
@@ -168,9 +167,20 @@ def _unfit_for_fence(path: Path, area: Fields, fields: Fields) -> Iterator[Schem
         )
         yield SchemaProblem((*path, "margin"), text)
     corners = _corners(area)
-    if _section(fields, "vehicle").get("autopilot", "ardupilot") == "ardupilot" and corners > _MOST_CORNERS:
-        text = f"{corners} corners are more than the {_MOST_CORNERS} of ArduPilot's fence polygons: simplify it"
-        yield SchemaProblem((*path, "polygon"), text)
+    if corners:
+        yield from _too_many_corners(path, corners, _section(fields, "vehicle").get("autopilot", "ardupilot"))
+
+
+def _too_many_corners(path: Path, corners: int, autopilot: object) -> Iterator[SchemaProblem]:
+    """A polygon with more corners than its autopilot's fence can hold."""
+    from gcs_windplan.mission.firmware import autopilots, firmware_of  # heavy, and few missions have a fence
+
+    if not isinstance(autopilot, str) or autopilot not in autopilots():
+        return  # which is said elsewhere
+    firmware = firmware_of(autopilot)
+    if firmware.fence_corners is not None and corners > firmware.fence_corners:
+        most = f"the {firmware.fence_corners} of {firmware.name}'s fence polygons"
+        yield SchemaProblem((*path, "polygon"), f"{corners} corners are more than {most}: simplify it")
 
 
 def _corners(area: Fields) -> int:

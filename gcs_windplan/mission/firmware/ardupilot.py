@@ -322,6 +322,7 @@ ARDUCOPTER: Final = Firmware(
     zero_altitude=frozenset((*_CIRCLES, *_WAYPOINTS)),  # mode_auto.cpp, loc_from_cmd: 0 in any frame
     zero_frames=frozenset((Frame.GLOBAL, Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_TERRAIN_ALT, Frame.MISSION)),
     ignored=_COPTER_IGNORES,
+    fence_corners=255,  # AC_PolyFence_loader.h, PolygonBoundary and its count on storage: one byte
 )
 
 ARDUPLANE: Final = replace(

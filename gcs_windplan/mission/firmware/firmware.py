@@ -143,7 +143,7 @@ class Firmware:
     least that one climbs. `takeoff_goes_to_place`: it is followed by a leg to its place. `lands_and_goes_on`: a mission
     goes on after a landing with a new take-off. `ends_over_home`: one that ends in the air leads a fixed-wing home.
     `circles` are the commands whose parameter of that index is the radius of circles flown, `circle_radius` [m] the
-    one flown where none is named.
+    one flown where none is named. A polygon of its fence has at most `fence_corners`.
 
     How it flies by default: `motion` is a multicopter's, `cruise` [m/s] a fixed-wing's airspeed and `plane_return` [m]
     its height above home on the way back, None where that is a multicopter's and never lower than it flies. Its own
@@ -204,6 +204,7 @@ class Firmware:
     vtol_only: frozenset[int] = frozenset()
     not_flown: frozenset[int] = frozenset()
     feasibility: Feasibility | None = None
+    fence_corners: int | None = None
     variants: tuple[Firmware, ...] = field(default=(), repr=False)
 
     @property
