@@ -9,6 +9,7 @@ import numpy as np
 import gcs_windplan as gw
 from gcs_windplan.planning.request import Request, Site, Uniform
 from gcs_windplan.wind.field import Steady
+from tests.scenes import in_scene
 from tests.worlds import rough_dem
 
 FRAME = gw.LocalFrame(gw.GeoPoint(46.8, 9.8))
@@ -69,7 +70,7 @@ def request(**changes) -> Request:
         "start": Site("start", -900.0, 0.0), "goal": Site("goal", 900.0, 0.0), "clearance": 25.0, "max_height": 110.0,
         "graph": Uniform(60.0), "layers": (40.0,), "margin": 500.0,
     } | changes  # fmt: skip
-    return Request(**whole)
+    return Request(**in_scene(**whole))
 
 
 def divided(robust: float = 0.5) -> Request:

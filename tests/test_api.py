@@ -84,7 +84,7 @@ def test_words_and_values_say_the_same(gallery):
 
     words = gw.plan(replace(MISSION, wind="6 m/s from 90 deg", departure="2026-05-01T08:00Z"))
     short = gw.plan(replace(MISSION, wind="6@90", start="36.55,-84.30", goal=gw.Place(gw.GeoPoint(36.56, -84.28))))
-    value = gw.plan(replace(MISSION, wind=ConstantWind.from_direction(6.0, 90.0, words.request.frame)))
+    value = gw.plan(replace(MISSION, wind=ConstantWind.from_direction(6.0, 90.0, words.request.scene.frame)))
     assert words.totals == short.totals == value.totals
     assert words.totals.seconds > gw.plan(MISSION).totals.seconds
 

@@ -78,7 +78,7 @@ def test_routes_over_real_ground(text, dem, slope, shared_data, tmp_path):
     corners = np.array([(w.east, w.north, w.altitude) for w in found.waypoints])
     share = np.linspace(0, 1, 200)[:, None]
     points = np.concatenate([a + share * (b - a) for a, b in pairwise(corners)])
-    latitudes, longitudes = request.frame.to_geographic(points)
+    latitudes, longitudes = request.scene.frame.to_geographic(points)
     above = points[:, 2] - pixel_heights(shared_data / "dem" / dem, latitudes, longitudes)
     assert above.min() >= request.clearance - slope
     assert above.max() <= request.max_height + slope
@@ -138,7 +138,7 @@ def test_over_the_big_butte_ten_metre_winds_are_carried_up_by_the_law(shared_dat
     found = plan(tmp_path, BUTTE, data=shared_data)
     request = found.request
     ground = np.array([[w.east, w.north, 0.0] for w in found.waypoints])
-    ground[:, 2] = request.terrain.heights_at(ground)
-    low, high = (request.wind.at(ground + np.array([0.0, 0.0, height])) for height in (10.0, 100.0))
+    ground[:, 2] = request.scene.terrain.heights_at(ground)
+    low, high = (request.scene.wind.at(ground + np.array([0.0, 0.0, height])) for height in (10.0, 100.0))
     np.testing.assert_allclose(high, low * np.log(1000) / np.log(100), atol=1e-9)
     assert np.hypot(low[:, 0], low[:, 1]).min() > 0.5

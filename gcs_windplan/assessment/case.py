@@ -3,44 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from datetime import datetime
 
 from gcs_windplan.assessment.assessment import AssessmentLimits, Source
-from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.mission import MissionItems
-from gcs_windplan.scene import Airspace
-from gcs_windplan.terrain import Obstacles, Terrain
+from gcs_windplan.scene import Scene
 from gcs_windplan.vehicle import Airframe, Autopilot, MotionProfile, VehicleType
-from gcs_windplan.wind.field import WindField
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """A mission and what it is judged by; terrain, wind and areas are seen from `frame`.
+    """A mission and what it is judged by.
 
-    `wind` tells seconds since the `departure`, `gusts` are its gusts, one field a member. Of an ensemble it is the mean
-    of the `members`, and the share `robust` of them is to be flown in. The autopilot keeps `pace`, of which `airspeed`
-    is the most that the vehicle reaches; `cruise` [m/s] is its own, which a fixed-wing holds. Energy is known with an
-    `airframe`. `home_is_given`: home's altitude is the pilot's, and counts as it is.
+    Of the members of an ensemble's wind it is to be flown in the share `robust`. The autopilot keeps `pace`, of
+    which `airspeed` is the most that the vehicle reaches; `cruise` [m/s] is its own, which a fixed-wing holds.
+    Energy is known with an `airframe`. `home_is_given`: home's altitude is the pilot's, and counts as it is.
     """
 
     name: str
     mission: MissionItems
-    frame: LocalFrame
-    terrain: Terrain
-    wind: WindField
+    scene: Scene
     autopilot: Autopilot
     vehicle_type: VehicleType
     pace: MotionProfile
     cruise: float
     limits: AssessmentLimits = field(default_factory=AssessmentLimits)
     airframe: Airframe | None = None
-    gusts: tuple[WindField, ...] = ()
-    members: tuple[WindField, ...] = ()
     robust: float = 0.5
-    airspace: Airspace = field(default_factory=Airspace)
-    obstacles: Obstacles | None = None
-    departure: datetime | None = None
     home_is_given: bool = False
     sources: tuple[Source, ...] = ()
     remarks: tuple[str, ...] = ()

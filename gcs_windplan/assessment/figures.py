@@ -63,8 +63,8 @@ def _stops(flown: Flown, distances: FloatArray, case: Case) -> tuple[Stop, ...]:
     first = int(track.leg_moves[0]) if len(track.leg_moves) else len(track.moves)
     over_home = track.moves[first - 1].end if first else track.course.home
     places = np.array([over_home, *(track.moves[i].end for i in track.leg_moves)])
-    ground = case.terrain.heights_at(places)
-    latitudes, longitudes = case.frame.to_geographic(places)
+    ground = case.scene.terrain.heights_at(places)
+    latitudes, longitudes = case.scene.frame.to_geographic(places)
     stops = []
     for number, after in enumerate([first, *(track.leg_moves + 1)]):
         move = track.moves[after - 1] if number else None  # None: it is over the take-off
@@ -126,7 +126,7 @@ def _legs(flown: Flown, heights: Heights, case: Case) -> tuple[AssessedLeg, ...]
         across=flown.samples.means(motion.across),
         air=flown.in_time(motion.air),
         ground=flown.in_time(motion.ground),
-        turns=np.degrees(case.frame.convergence(np.array([np.add(m.start, m.end) / 2 for m in track.moves]))),
+        turns=np.degrees(case.scene.frame.convergence(np.array([np.add(m.start, m.end) / 2 for m in track.moves]))),
     )
     return tuple(_leg(number, int(i), means, flown, heights) for number, i in enumerate(track.leg_moves, start=1))
 

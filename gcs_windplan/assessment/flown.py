@@ -99,8 +99,8 @@ def fly_track(track: Track, case: Case) -> Flown:
     samples = sample(track, case)
     passed = np.zeros(len(samples.move))
     begins = np.zeros(len(track.moves) + 1)
-    for _ in range(_ROUNDS if len(case.wind.times) > 1 else 1):
-        wind = known_wind(case.wind, samples.places, passed)
+    for _ in range(_ROUNDS if len(case.scene.wind.times) > 1 else 1):
+        wind = known_wind(case.scene.wind, samples.places, passed)
         flown = _timed(track, samples, wind, case)
         moved = float(np.abs(flown.begins - begins).max(initial=0.0))
         begins, passed = flown.begins, flown.passed
@@ -111,7 +111,7 @@ def fly_track(track: Track, case: Case) -> Flown:
 
 def sample(track: Track, case: Case) -> Samples:
     """The samples of a track: four in each cell of the wind, at least four in a piece of a leg."""
-    apart = case.wind.resolution / 4
+    apart = case.scene.wind.resolution / 4
     whole = np.array([len(path) == 2 for path in track.paths])[track.owners]  # the pieces of curves are short already
     counts = np.clip(np.ceil(track.levels / apart), np.where(whole, _FEWEST, 1), _MOST)
     while counts.sum() > _MOST_ALL and counts.max() > 1:

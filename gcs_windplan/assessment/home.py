@@ -45,18 +45,18 @@ def check_places(case: Case) -> None:
     if home is not None:
         places.insert(0, ("home", home.point.latitude_deg, home.point.longitude_deg))
     for name, latitude, longitude in places:
-        away = float(np.hypot(*case.frame.to_local(latitude, longitude)[0]))
+        away = float(np.hypot(*case.scene.frame.to_local(latitude, longitude)[0]))
         if not away <= _FARTHEST:
             raise InputError(
                 f"{name} lies {away / 1000:.0f} km from the middle of the terrain and wind that it is judged by"
-                f" ({case.frame.origin}): judge it by those of its own site"
+                f" ({case.scene.frame.origin}): judge it by those of its own site"
             )
 
 
 def ground_at(point: GeoPoint, case: Case) -> float:
     """The ground's height at a place [m], NaN where it is not known."""
-    places = case.frame.to_local(point.latitude_deg, point.longitude_deg)
-    return float(case.terrain.heights_at(np.ascontiguousarray(places))[0])
+    places = case.scene.frame.to_local(point.latitude_deg, point.longitude_deg)
+    return float(case.scene.terrain.heights_at(np.ascontiguousarray(places))[0])
 
 
 def first_place(mission: MissionItems) -> GeoPoint | None:

@@ -31,16 +31,16 @@ def assess(case: Case, more: Iterable[Finding] = ()) -> Assessment:
     """
     case, track = _tracked(case)
     flown = fly_track(track, case)
-    mission = assessed_mission(flown, heights_of(track, case.terrain), case)
+    mission = assessed_mission(flown, heights_of(track, case.scene.terrain), case)
     findings = [*more, *located([found for rule in RULES for found in rule(mission)], case)]
     findings = [replace(one, message=one.message or message_of(one)) for one in findings]
     return Assessment(
         name=case.name,
         autopilot=case.autopilot,
         vehicle_type=case.vehicle_type,
-        frame=case.frame,
-        vertical_datum=case.terrain.vertical_datum,
-        departure=case.departure,
+        frame=case.scene.frame,
+        vertical_datum=case.scene.terrain.vertical_datum,
+        departure=case.scene.departure,
         stops=mission.stops,
         legs=mission.legs,
         profile=profile_of(mission),
@@ -68,9 +68,10 @@ def _tracked(case: Case) -> tuple[Case, Track]:
 
 def _assumed(case: Case) -> Iterator[str]:
     """What the judgement takes for granted."""
-    if case.members:
+    members = len(case.scene.members)
+    if members:
         yield (
-            f"time and battery are those in the mean wind of {len(case.members)} members; the strongest wind, gusts and"
+            f"time and battery are those in the mean wind of {members} members; the strongest wind, gusts and"
             " which legs can be flown are looked at in each"
         )
     if case.airframe is None or not case.hovers:

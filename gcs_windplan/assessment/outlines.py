@@ -22,18 +22,18 @@ _LONGEST: Final = 500.0  # [m] of a side that is as good as straight in latitude
 
 def outlines_of(case: Case) -> tuple[Outline, ...]:
     """All areas, for maps and for judging."""
-    outlines = [outline_of(prism, "keep-out") for prism in case.airspace.keep_out]
-    outlines += [outline_of(prism, "keep-in") for prism in case.airspace.keep_in]
-    if case.obstacles is not None:
-        outlines += [outline for obstacle in case.obstacles.items for outline in _of_obstacle(obstacle)]
+    outlines = [outline_of(prism, "keep-out") for prism in case.scene.airspace.keep_out]
+    outlines += [outline_of(prism, "keep-in") for prism in case.scene.airspace.keep_in]
+    if case.scene.obstacles is not None:
+        outlines += [outline for obstacle in case.scene.obstacles.items for outline in _of_obstacle(obstacle)]
     fence = case.mission.fence
     if fence is None:
         return tuple(outlines)
     for number, polygon in enumerate(fence.polygons, start=1):
-        corners = _sides(polygon, case.frame)
+        corners = _sides(polygon, case.scene.frame)
         outlines.append(Outline(f"fence polygon {number}", _kind(polygon.inclusion), corners))
     for number, circle in enumerate(fence.circles, start=1):
-        centre = case.frame.to_local(circle.centre.latitude_deg, circle.centre.longitude_deg)[0]
+        centre = case.scene.frame.to_local(circle.centre.latitude_deg, circle.centre.longitude_deg)[0]
         corners = centre + _ring(circle.radius, outer=not circle.inclusion)
         outlines.append(Outline(f"fence circle {number}", _kind(circle.inclusion), corners))
     return tuple(outlines)

@@ -31,21 +31,14 @@ def case_of(request: Request, mission: MissionItems, sources: Sequence[Source] =
     return Case(
         name=request.name,
         mission=mission,
-        frame=request.frame,
-        terrain=request.terrain,
-        wind=request.wind,
+        scene=request.scene,
         autopilot=vehicle.autopilot,
         vehicle_type=vehicle.type,
         pace=pace_for(request),
         cruise=vehicle.airspeed,
         limits=limits_of(request),
         airframe=airframe,
-        gusts=request.gusts,
-        members=request.members,
         robust=request.robust,
-        airspace=request.airspace,
-        obstacles=request.obstacles,
-        departure=request.departure,
         sources=tuple(sources),
     )
 

@@ -33,10 +33,10 @@ def profile_of(mission: AssessedMission) -> Profile:
     levels = np.concatenate([[0.0], np.cumsum(track.levels)])
     distance = levels[piece] + t * track.levels[piece]
     seconds = _clock(mission, piece, t)
-    winds = known_wind(case.wind, points, seconds).winds
+    winds = known_wind(case.scene.wind, points, seconds).winds
     direction = (vectors / np.where(track.lengths > 0, track.lengths, 1.0)[:, None])[piece]
     motion = motion_in(winds, commands_of(track, owner, direction, flown.peaks, case), case)
-    latitudes, longitudes = case.frame.to_geographic(points)
+    latitudes, longitudes = case.scene.frame.to_geographic(points)
     power = watts(motion, points[:, 2], case)
     return Profile(
         distance=distance,
@@ -46,7 +46,7 @@ def profile_of(mission: AssessedMission) -> Profile:
         east=points[:, 0],
         north=points[:, 1],
         altitude=points[:, 2],
-        ground=case.terrain.heights_at(points),
+        ground=case.scene.terrain.heights_at(points),
         wind_along=motion.along,
         wind_across=motion.across,
         wind_east=winds[:, 0],
@@ -112,10 +112,10 @@ def ground_map_of(mission: AssessedMission) -> GroundMap:
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     lacking = np.maximum(_NARROWEST * float((high - low).max()) - (high - low), 0.0) / 2
     low, high = low - lacking, high + lacking
-    cell = max(float((high - low).max()) / (_NODES - 1), case.terrain.resolution / 4)
+    cell = max(float((high - low).max()) / (_NODES - 1), case.scene.terrain.resolution / 4)
     east, north = (np.linspace(low[i], high[i], math.ceil((high[i] - low[i]) / cell) + 1)[:_NODES] for i in (0, 1))
     grid = np.meshgrid(east, north)
-    heights = case.terrain.heights_at(np.column_stack([axis.ravel() for axis in grid])).reshape(grid[0].shape)
+    heights = case.scene.terrain.heights_at(np.column_stack([axis.ravel() for axis in grid])).reshape(grid[0].shape)
     above = [stop.above_ground for stop in mission.stops if not math.isnan(stop.above_ground)]
     height = float(np.round(np.mean(above) if above else 50.0, -1)) or 10.0
     when = float(mission.flown.begins[-1] / 2)
@@ -128,8 +128,8 @@ def _arrows(low: FloatArray, high: FloatArray, height: float, when: float, case:
     apart = float((high - low).max()) / _ARROWS
     axes = [np.arange(low[i] + apart / 2, high[i], apart) for i in (0, 1)]
     plan = np.column_stack([axis.ravel() for axis in np.meshgrid(*axes)])
-    places = np.column_stack([plan, case.terrain.heights_at(plan) + height])
+    places = np.column_stack([plan, case.scene.terrain.heights_at(plan) + height])
     places = places[np.isfinite(places[:, 2])]
-    winds = known_wind(case.wind, places, np.full(len(places), when)).winds
+    winds = known_wind(case.scene.wind, places, np.full(len(places), when)).winds
     known = np.isfinite(winds).all(axis=1)
     return places[known, :2], winds[known, :2]

@@ -54,7 +54,7 @@ def ways_to_rally(stops: Sequence[Stop], home: Sequence[float], case: Case) -> W
     heights = places[nearest, 2]
     altitudes = np.maximum([stop.altitude for stop in stops], heights)
     targets = places[nearest]
-    ground = case.terrain.heights_at(targets)
+    ground = case.scene.terrain.heights_at(targets)
     targets[:, 2] = np.where(np.isfinite(ground), ground, home[2])
     return _ways(stops, targets, altitudes, case)
 
@@ -70,8 +70,8 @@ def with_energies(stops: Sequence[Stop], home: WaysBack, rally: WaysBack | None)
 
 
 def _rally_place(rally: RallyPoint, home: float, case: Case) -> tuple[float, float, float]:
-    east, north = case.frame.to_local(rally.point.latitude_deg, rally.point.longitude_deg)[0]
-    ground = float(case.terrain.heights_at(np.array([[east, north]]))[0])
+    east, north = case.scene.frame.to_local(rally.point.latitude_deg, rally.point.longitude_deg)[0]
+    ground = float(case.scene.terrain.heights_at(np.array([[east, north]]))[0])
     datum = {Frame.GLOBAL: 0.0, Frame.GLOBAL_TERRAIN_ALT: home if math.isnan(ground) else ground}
     return float(east), float(north), datum.get(Frame(rally.frame), home) + rally.altitude
 
@@ -80,7 +80,7 @@ def _ways(stops: Sequence[Stop], targets: FloatArray, altitudes: FloatArray, cas
     """The ways from stops to targets (n, 3) on the ground, level at altitudes (n,)."""
     here = np.array([(stop.east, stop.north, stop.altitude) for stop in stops])
     starts, ends = (np.column_stack([place[:, :2], altitudes]) for place in (here, targets))
-    clearance = case.terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))[:, 0]
+    clearance = case.scene.terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))[:, 0]
     safe = altitudes + np.maximum(-np.nan_to_num(clearance), 0.0)
     starts[:, 2] = ends[:, 2] = safe
     level = _flown_level(starts, ends, np.array([stop.seconds for stop in stops]), case)
@@ -116,7 +116,7 @@ def _flown_level(starts: FloatArray, ends: FloatArray, begins: FloatArray, case:
     share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     when = begins[:, None] + share * lengths[:, None] / speed
     places = (starts[:, None] + share[None, :, None] * vectors[:, None]).reshape(-1, 3)
-    winds = known_wind(case.wind, places, when.ravel()).filled
+    winds = known_wind(case.scene.wind, places, when.ravel()).filled
     direction = np.repeat(vectors / np.maximum(lengths, 1e-9)[:, None], _SAMPLES, axis=0)
     count = len(places)
     command = MotionCommand(direction, np.full(count, speed), np.zeros(count), np.full(count, case.cruise))

@@ -93,7 +93,7 @@ def track_of(case: Case) -> Track:
 
     Raises `InputError` for a mission that leads nowhere, or repeats more than 20 000 items.
     """
-    course = course_of(case.mission, case.frame, case.terrain.heights_at)
+    course = course_of(case.mission, case.scene.frame, case.scene.terrain.heights_at)
     if not course.moves:
         raise InputError("the mission leads nowhere: none of its items is flown")
     moves = [piece for move in course.moves for piece in _laid_out(move, case)]
@@ -125,7 +125,7 @@ def _laid_out(move: Move, case: Case) -> list[Move]:
     if not case.hovers:  # it circles over home, to which it glides down from above
         return [*climbs, replace(move, kind="leg", start=up, end=over)]
     across = replace(move, kind="leg", start=up, end=over, hold=case.pace.return_hover)
-    below = float(case.terrain.heights_at(np.array([over]))[0])
+    below = float(case.scene.terrain.heights_at(np.array([over]))[0])
     down = ground if math.isnan(below) else min(below, height)
     landing = Move(move.item, "landing", "land", over, (east, north, down), CommandedSpeeds())
     return [*climbs, across, landing]
@@ -176,15 +176,15 @@ def _draped(path: FloatArray, case: Case) -> FloatArray:
     """
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     total = float(steps.sum())
-    ground = case.terrain.heights_at(path[[0, -1]])
+    ground = case.scene.terrain.heights_at(path[[0, -1]])
     if total < _LEVEL or not np.isfinite(ground).all():
         return path
-    count = int(np.clip(math.ceil(_FINE * total / case.terrain.resolution), len(path) - 1, _MOST_STEPS))
+    count = int(np.clip(math.ceil(_FINE * total / case.scene.terrain.resolution), len(path) - 1, _MOST_STEPS))
     way = np.concatenate([[0.0], np.cumsum(steps)])
     at = np.union1d(np.linspace(0.0, total, count + 1), way)
     places = np.column_stack([np.interp(at, way, path[:, axis]) for axis in range(3)])
     above = path[[0, -1], 2] - ground
-    over = case.terrain.heights_at(places) + above[0] + (above[1] - above[0]) * at / total
+    over = case.scene.terrain.heights_at(places) + above[0] + (above[1] - above[0]) * at / total
     places[:, 2] = np.where(np.isfinite(over), over, places[:, 2])
     places[[0, -1], 2] = path[[0, -1], 2]
     return places

@@ -26,7 +26,7 @@ def print_departures(request: Request, found: Sequence[Departure], took: float, 
     longest = max((one.seconds or 0.0 for one in flown), default=1.0)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("departure UTC", min_width=11)
-    ensemble, known = bool(request.members), request.power is not None
+    ensemble, known = bool(request.scene.members), request.power is not None
     spread = {"10 - 90 %": 13, "flown in": 5} if ensemble else {}
     energy = {f"Wh{' (90 %)' * ensemble}": 11} if known else {}
     for name, width in {"time min": 5, **spread, **energy, "wind m/s": 4, "gust m/s": 4}.items():
@@ -87,8 +87,8 @@ def _summary(
         if one.seconds is None and one.reason is not None:
             told.setdefault(one.reason, one)
     lines += [f"no route when leaving {one.moment:%m-%d %H:%M}: {reason}" for reason, one in list(told.items())[:3]]
-    lines.append(f"wind: {request.wind.name}")
-    members = f" x {len(request.members)} members" if request.members else ""
+    lines.append(f"wind: {request.scene.wind.name}")
+    members = f" x {len(request.scene.members)} members" if request.scene.members else ""
     worked = sum(one.worked for one in found)
     used = min(available_cores() if cores is None else cores, len(found))
     lines.append(

@@ -85,7 +85,7 @@ def summary_lines(plan: PlannedRoute) -> list[str]:
         *_energy(plan),
         *_way_home(plan),
         f"above ground {totals.clearance:.1f} to {totals.height:.1f} m; climbs {totals.climb:.0f} m,"
-        f" descends {totals.descent:.0f} m; wind: {plan.request.wind.name}",
+        f" descends {totals.descent:.0f} m; wind: {plan.request.scene.wind.name}",
         *_strongest(plan),
         f"{effort.nodes} nodes laid in {effort.veil_seconds:.2f} s, {effort.expanded} expanded in"
         f" {effort.search_seconds:.2f} s, {effort.vertices} vertices shaped in {effort.shaping_seconds:.2f} s",

@@ -12,6 +12,7 @@ from gcs_windplan.errors import NoRouteError
 from gcs_windplan.flight.energy import leg_energies
 from gcs_windplan.flight.sampling import LegIntegrals, clocked, integrate, still_air_times
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
+from gcs_windplan.scene import Scene
 from gcs_windplan.terrain import Terrain
 from gcs_windplan.vehicle import PowerModel, Vehicle, air_density
 from gcs_windplan.wind.field import WindField
@@ -102,9 +103,7 @@ class Flight:
 
 def fly(
     points: FloatArray,
-    frame: LocalFrame,
-    terrain: Terrain,
-    wind: WindField,
+    scene: Scene,
     vehicle: Vehicle,
     begin: float = 0.0,
     power: PowerModel | None = None,
@@ -117,20 +116,20 @@ def fly(
     Raises `NoRouteError` where a leg cannot be flown in the wind.
     """
     starts, ends = points[:-1], points[1:]
-    parts, times = fly_legs(points, wind, vehicle, begin, airspeeds)
-    _refuse_unflyable(parts, times, wind, points)
-    heights = terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
-    convergence = np.degrees(frame.convergence((starts + ends) / 2))
+    parts, times = fly_legs(points, scene.wind, vehicle, begin, airspeeds)
+    _refuse_unflyable(parts, times, scene.wind, points)
+    heights = scene.terrain.leg_heights(np.ascontiguousarray(starts), np.ascontiguousarray(ends))
+    convergence = np.degrees(scene.frame.convergence((starts + ends) / 2))
     speeds = np.full(len(starts), float(vehicle.airspeed)) if airspeeds is None else airspeeds
     legs = tuple(
         _leg(i, ends[i] - starts[i], parts, heights[i], float(convergence[i]), float(speeds[i]))
         for i in range(len(starts))
     )
-    waypoints = _waypoints(points, frame, terrain, parts.seconds)
+    waypoints = _waypoints(points, scene.frame, scene.terrain, parts.seconds)
     flight = Flight(waypoints, legs, _totals(legs, waypoints, vehicle))
     if power is None:
         return flight
-    return _with_energy(flight, leg_energies(points, times, wind, vehicle, power, speeds), vehicle, power)
+    return _with_energy(flight, leg_energies(points, times, scene.wind, vehicle, power, speeds), vehicle, power)
 
 
 def fly_legs(

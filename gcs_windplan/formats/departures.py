@@ -29,4 +29,4 @@ def format_departures(request: Request, found: Sequence[Departure]) -> str:
         }
         for one in found
     ]
-    return json_text({"name": request.name, "wind": request.wind.name, "departures": rows}) + "\n"
+    return json_text({"name": request.name, "wind": request.scene.wind.name, "departures": rows}) + "\n"

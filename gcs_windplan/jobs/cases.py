@@ -20,6 +20,7 @@ from gcs_windplan.jobs.winds import GivenWind, LoadedWind, Surroundings, WindSou
 from gcs_windplan.jobs.words import read_as
 from gcs_windplan.mission import MissionItems
 from gcs_windplan.mission.firmware import firmware_of
+from gcs_windplan.scene import Scene
 from gcs_windplan.terrain import Extent
 from gcs_windplan.vehicle import Airframe, Autopilot, MotionProfile, VehicleType
 from gcs_windplan.wind import Calm
@@ -42,7 +43,8 @@ def case_by_criteria(mission: MissionItems, name: str, file: Path | None, criter
     frame = _frame(mission, criteria, file)
     area = _area(mission, frame, criteria)
     terrain = terrain_source.load(frame, area)
-    winds = _winds(wind_source, criteria, Surroundings(frame, terrain, area, criteria.moment))
+    where = Surroundings(frame, terrain, area, criteria.moment)
+    winds = _winds(wind_source, criteria, where)
     if criteria.wind is None:
         remarks += (f"no {criteria.named('wind')} was given: the air is taken to be still",)
     pace = _pace(autopilot, airframe)
@@ -51,18 +53,13 @@ def case_by_criteria(mission: MissionItems, name: str, file: Path | None, criter
     case = Case(
         name=name,
         mission=mission,
-        frame=frame,
-        terrain=terrain,
-        wind=winds.wind,
+        scene=Scene(frame, terrain, winds.wind, winds.members, winds.gusts, departure=criteria.moment),
         autopilot=autopilot,
         vehicle_type=kind,
         pace=pace,
         cruise=_cruise(mission, airframe, autopilot),
         limits=criteria.limits_with(_own_limits(airframe), defaults=True),
         airframe=airframe,
-        gusts=winds.gusts,
-        members=winds.members,
-        departure=criteria.moment,
         remarks=remarks,
     )
     case = criteria.with_home(case)
@@ -219,7 +216,7 @@ def _area(mission: MissionItems, frame: LocalFrame, criteria: Criteria) -> Exten
 
 def _sources(terrain: TerrainSource, wind: WindSource, case: Case, criteria: Criteria) -> Iterator[Source]:
     """What the criteria name."""
-    yield from sources_of_terrain(terrain, case.terrain.name, f"heights in {case.terrain.vertical_datum}")
-    yield from sources_of_wind(wind, case.wind.name)
+    yield from sources_of_terrain(terrain, case.scene.terrain.name, f"heights in {case.scene.terrain.vertical_datum}")
+    yield from sources_of_wind(wind, case.scene.wind.name)
     if criteria.vehicle is not None and not isinstance(criteria.vehicle, Airframe):
         yield source("vehicle", Path(criteria.vehicle), "" if case.airframe is None else case.airframe.name)

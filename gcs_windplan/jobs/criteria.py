@@ -124,8 +124,8 @@ class Criteria:
 
     def _refuse_limits_unknown(self, case: Case) -> None:
         """A limit of gusts that no forecast tells, or of a battery that no airframe has, would be kept by anything."""
-        if self.max_gust is not None and not case.gusts:
-            text = f"the wind has no gusts ({case.wind.name}): leave it out, or take a forecast with gusts"
+        if self.max_gust is not None and not case.scene.gusts:
+            text = f"the wind has no gusts ({case.scene.wind.name}): leave it out, or take a forecast with gusts"
             raise self.error("max_gust", text)
         if self.min_battery is not None and case.airframe is None:
             raise self.error("min_battery", "the battery is not known: leave it out, or give an airframe")

@@ -169,7 +169,8 @@ def departures(
     tracker = Tracker(progress, cancel)
     if not isinstance(mission, Mission | Request):
         mission = read_mission(mission)
-    moments = moments_of(first, last, every, as_moment(mission.departure))
+    own = mission.scene.departure if isinstance(mission, Request) else as_moment(mission.departure)
+    moments = moments_of(first, last, every, own)
     lasting = (moments[-1] - moments[0]).total_seconds() + DAY
     request = as_request(mission, tracker, moments[0], lasting)
     return list(sweep(request, moments, cores=cores, progress=progress, cancel=cancel))

@@ -24,7 +24,7 @@ from gcs_windplan.jobs.winds import DAY, Surroundings, as_profile, as_wind
 from gcs_windplan.jobs.words import read_as
 from gcs_windplan.planning.request import FenceArea, Request, Site
 from gcs_windplan.planning.sites import choose_margin
-from gcs_windplan.scene import Airspace, Prism
+from gcs_windplan.scene import Airspace, Prism, Scene
 from gcs_windplan.terrain import Extent
 
 _T = TypeVar("_T")
@@ -67,9 +67,7 @@ def request_of(mission: Mission, departure: datetime | str | None = None, lastin
         vehicle = replace(vehicle, airspeed=float(mission.airspeed))
     return Request(
         name=mission.name,
-        frame=frame,
-        terrain=terrain,
-        wind=winds.wind,
+        scene=Scene(frame, terrain, winds.wind, winds.members, winds.gusts, obstacles, airspace, when),
         vehicle=vehicle,
         start=sites[0],
         goal=sites[-1],
@@ -82,18 +80,13 @@ def request_of(mission: Mission, departure: datetime | str | None = None, lastin
         graph=mission.graph,
         layers=tuple(mission.layers),
         margin=mission.margin,
-        obstacles=obstacles,
-        airspace=airspace,
         collision_test=mission.collision_test,
-        departure=when,
         finish=mission.finish,
         return_height=mission.return_height,
         export=mission.export,
         fence=tuple(_fence(mission, frame)),
         fence_return=None if mission.fence_return is None else beside[-1],
         rally=tuple(beside[: len(mission.rally)]),
-        members=winds.members,
-        gusts=winds.gusts,
         robust=mission.robust,
         airframe=airframe,
         free_airspeed=free,

@@ -150,7 +150,7 @@ def _planned(
         if isinstance(mission, Mission):
             tracker.at("reading terrain and wind")
             request = request_of(mission, criteria.moment)
-            sources = list(sources_of_mission(mission, request.wind.name))
+            sources = list(sources_of_mission(mission, request.scene.wind.name))
         else:
             request = mission
         plan = planner.plan_routes(request, [request.cost], progress=tracker.progress, cancel=tracker.cancel)[0]
@@ -180,7 +180,7 @@ def _in_world(world: Mission, criteria: Criteria) -> Case:
     named = world.name if world.document is None else world.document.file
     _refuse_two_worlds(named, criteria)
     request = request_of(world, criteria.moment)
-    case = case_of(request, MissionItems(()), tuple(sources_of_mission(world, request.wind.name, role=None)))
+    case = case_of(request, MissionItems(()), tuple(sources_of_mission(world, request.scene.wind.name, role=None)))
     said = f"judged by the terrain, wind, vehicle, limits and areas of {named}"
     limits = criteria.limits_with(replace(case.limits, first_leg=500.0))
     return replace(case, remarks=(said,), limits=limits)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -90,9 +90,9 @@ def sweep(
     `plan_route` does for what is wrong at every departure.
     """
     tracker = Tracker(progress, cancel)
-    problem = pose_problem(replace(request, members=()), progress=progress, cancel=cancel)
-    if request.departure is not None and len(moments):
-        begins = [(moment - request.departure).total_seconds() for moment in moments]
+    problem = pose_problem(request.in_the_mean(), progress=progress, cancel=cancel)
+    if request.scene.departure is not None and len(moments):
+        begins = [(moment - request.scene.departure).total_seconds() for moment in moments]
     else:
         begins = [0.0] * len(moments)
     problem.graph.winds_between(min(begins), max(begins))
@@ -130,10 +130,7 @@ class _Job:
         try:
             problem = optimise_order(self.problem, self.choice, begin)[0]
             found = find_route(problem, self.choice, begin, shaping=shape_quickly)
-            flight = fly(
-                found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
-                found.airspeeds,
-            )  # fmt: skip
+            flight = fly(found.points, request.scene, request.vehicle, begin, request.power, found.airspeeds)
         except (NoRouteError, WindError) as error:
             brief = error.brief if isinstance(error, NoRouteError) else str(error)
             return Departure(moment, reason=str(error), brief=brief, worked=time.process_time() - since)
@@ -166,6 +163,6 @@ class _Job:
 
     def _ending(self, flight: Flight, begin: float) -> str:
         """Whether the forecast's end is near enough to be the reason, in words."""
-        times = self.request.wind.times
+        times = self.request.scene.wind.times
         near = len(times) > 1 and begin + _NEAR_THE_END * flight.totals.seconds > times[-1]
         return ", forecast ends" if near else ""

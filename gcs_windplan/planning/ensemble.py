@@ -44,15 +44,15 @@ def spread_of(
     In a member whose wind or gusts break the request's limits it cannot be flown. Each leg is flown at the vehicle's
     airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
     """
-    if not request.members:
+    if not request.scene.members:
         return None
-    times = [fly_legs(points, member, request.vehicle, begin, airspeeds)[1] for member in request.members]
+    times = [fly_legs(points, member, request.vehicle, begin, airspeeds)[1] for member in request.scene.members]
     if request.limits.of_wind:
         broken = np.any(strongest_along(request, points, begin, airspeeds).over(request.limits), axis=1).tolist()
         times = [np.full(len(passed), np.inf) if over else passed for passed, over in zip(times, broken, strict=True)]
     energies = []
     if request.power is not None:
-        for member, passed in zip(request.members, times, strict=True):
+        for member, passed in zip(request.scene.members, times, strict=True):
             joules = leg_energies(points, passed, member, request.vehicle, request.power, airspeeds).sum()
             energies.append(float(joules) if np.isfinite(joules) else float("inf"))
     return Spread(tuple(float(passed[-1] - begin) for passed in times), tuple(energies))

@@ -73,12 +73,12 @@ def _fence(request: Request, home: Home) -> Fence | None:
     if not request.fence:
         return None
     polygons = [
-        FencePolygon(tuple(_points(area.places, request.frame)), area.inclusion)
+        FencePolygon(tuple(_points(area.places, request.scene.frame)), area.inclusion)
         for area in request.fence
         if area.radius is None
     ]
     circles = [
-        FenceCircle(next(_points(area.places, request.frame)), area.radius, area.inclusion)
+        FenceCircle(next(_points(area.places, request.scene.frame)), area.radius, area.inclusion)
         for area in request.fence
         if area.radius is not None
     ]
@@ -98,7 +98,7 @@ def _rally(request: Request, home: Home) -> Iterator[RallyPoint]:
 def _above_home(sites: Iterable[Site], request: Request, home: Home) -> Iterator[tuple[GeoPoint, float]]:
     """Where sites are, and their heights above home [m]."""
     places = site_points(request, list(sites), choose_layers(request))
-    for point, altitude in zip(_points(places, request.frame), places[:, 2], strict=True):
+    for point, altitude in zip(_points(places, request.scene.frame), places[:, 2], strict=True):
         yield point, float(altitude) - home.altitude
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -30,13 +30,13 @@ def wind_limits(request: Request) -> WindLimits:
     limits = request.limits
     if not limits.of_wind:
         return NO_LIMITS
-    gusts: tuple[tuple[WindField, ...], ...] = tuple((one,) for one in request.gusts)
-    if not request.members and gusts:
-        gridded = [one for one in request.gusts if isinstance(one, GriddedWind)]
+    gusts: tuple[tuple[WindField, ...], ...] = tuple((one,) for one in request.scene.gusts)
+    if not request.scene.members and gusts:
+        gridded = [one for one in request.scene.gusts if isinstance(one, GriddedWind)]
         whole = len(gridded) == len(gusts)
-        gusts = ((mean_of(gridded),) if whole else request.gusts,)  # their first part is the gust: they add up
-    winds = request.members or (request.wind,)
-    everything = (*winds, *(() if limits.gust is None else request.gusts))
+        gusts = ((mean_of(gridded),) if whole else request.scene.gusts,)  # their first part is the gust: they add up
+    winds = request.scene.members or (request.scene.wind,)
+    everything = (*winds, *(() if limits.gust is None else request.scene.gusts))
     return WindLimits(
         math.inf if limits.wind is None else limits.wind,
         math.inf if limits.gust is None else limits.gust,
@@ -47,13 +47,13 @@ def wind_limits(request: Request) -> WindLimits:
 
 def limits_broken_at_sites(request: Request, sites: FloatArray) -> list[Problem]:
     """A limit of gusts that the wind does not tell, and the sites (n, 3) that the limits close at all times."""
-    limits, wind = request.limits, request.wind
-    if limits.gust is not None and not request.gusts:
+    limits, wind = request.limits, request.scene.wind
+    if limits.gust is not None and not request.scene.gusts:
         text = f"the forecast has no gusts ({wind.name}): leave the limit out, or take a forecast with them"
         return [Problem(text, "limits.gust")]
     if not limits.of_wind:
         return []
-    mean = wind_limits(replace(request, members=()))
+    mean = wind_limits(request.in_the_mean())
     moments = _moments(wind.times).tolist()
     closed = np.array([mean.shares(0, wind.at(sites, moment), sites, moment) > 1.0 for moment in moments])
     problems = []
@@ -152,11 +152,11 @@ def strongest_along(
 
     Each leg at the vehicle's airspeed, or at its own of `airspeeds` (n - 1,) [m/s].
     """
-    fields: tuple[WindField, ...] = request.members or (request.wind,)
+    fields: tuple[WindField, ...] = request.scene.members or (request.scene.wind,)
     winds, gusts = [], []
     for k, field in enumerate(fields):
         places, when = _samples(request, points, field, begin, airspeeds)
-        wind, gust = _strengths(field, request.gusts[k : k + 1], places.reshape(-1, 3), when.ravel())
+        wind, gust = _strengths(field, request.scene.gusts[k : k + 1], places.reshape(-1, 3), when.ravel())
         winds.append(np.fmax.reduce(wind.reshape(when.shape), axis=1))
         gusts.append(np.fmax.reduce(gust.reshape(when.shape), axis=1))
     return Strongest(np.array(winds), np.array(gusts))
@@ -168,7 +168,7 @@ def _samples(
     """Places (legs, k, 3) all along a route, and when they are passed in a wind (legs, k) [s since departure]."""
     times = fly_legs(points, wind, request.vehicle, begin, airspeeds)[1]
     if not np.isfinite(times).all():  # this member cannot fly it at all
-        times = fly_legs(points, request.wind, request.vehicle, begin, airspeeds)[1]
+        times = fly_legs(points, request.scene.wind, request.vehicle, begin, airspeeds)[1]
     longest = float(np.linalg.norm(np.diff(points, axis=0), axis=1).max())
     count = int(np.clip(math.ceil(_FINER * longest / wind.resolution), _FEWEST, _MOST))
     share = np.linspace(0.0, 1.0, count)

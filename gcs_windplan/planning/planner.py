@@ -185,10 +185,7 @@ def _planned(
             f"{error}{next_feasible_departure(begin, problem.graph.ends, partial(_lasting, problem, tracker))}",
             error.cuts,
         ) from error
-    flight = fly(
-        found.points, request.frame, request.terrain, request.wind, request.vehicle, begin, request.power,
-        found.airspeeds,
-    )  # fmt: skip
+    flight = fly(found.points, request.scene, request.vehicle, begin, request.power, found.airspeeds)
     effort = Effort(
         problem.graph.veil.size, found.expanded, found.vertices, problem.seconds, found.search_seconds,
         found.shaping_seconds,
@@ -241,7 +238,7 @@ def _best_route(
 ) -> tuple[FoundRoute, Spread | None]:
     """The route, and over an ensemble how long it takes in each member. Raises `NoRouteError`."""
     request = problem.request
-    if not request.members:
+    if not request.scene.members:
         return find_route(problem, choice, begin, shaping=shaping, cost_index=cost_index, tracker=tracker), None
     ways = [problem, problem.in_the_mean()] if choice.leg_cost.of_air else [problem]
     candidates, error = [], None

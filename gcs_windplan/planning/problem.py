@@ -51,7 +51,7 @@ class PlanningProblem:
         """The same without the members of an ensemble: only their mean blows."""
         if self.mean_graph is None:
             return self
-        return replace(self, request=replace(self.request, members=()), graph=self.mean_graph, mean_graph=None)
+        return replace(self, request=self.request.in_the_mean(), graph=self.mean_graph, mean_graph=None)
 
     @property
     def vehicle(self) -> Vehicle:
@@ -69,11 +69,11 @@ def pose_problem(
     tracker = Tracker(progress, cancel)
     tracker.at("placing the sites")
     rules = Clearance(
-        request.terrain,
+        request.scene.terrain,
         request.clearance,
         np.inf if request.max_height is None else request.max_height,
-        request.obstacles,
-        request.airspace,
+        request.scene.obstacles,
+        request.scene.airspace,
         request.collision_test,
     )
     layers = choose_layers(request)
@@ -87,9 +87,9 @@ def pose_problem(
     rules = replace(rules, area=area)
     veil = _lay_veil(request, rules, layers, sites, tracker)
     tracker.at("sampling the wind")
-    graph = sample_wind(veil, request.wind, request.members, wind_limits(request))
-    mean = replace(request, members=())
-    mean_graph = sample_wind(veil, mean.wind, limits=wind_limits(mean)) if request.members else None
+    graph = sample_wind(veil, request.scene.wind, request.scene.members, wind_limits(request))
+    mean = request.in_the_mean()
+    mean_graph = sample_wind(veil, mean.scene.wind, limits=wind_limits(mean)) if request.scene.members else None
     seconds = time.perf_counter() - begin
     return PlanningProblem(request, rules, sites, graph, seconds, power_of(request, graph, sites), mean_graph)
 

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from datetime import datetime
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from gcs_windplan.arrays import FloatArray
 from gcs_windplan.errors import Problem
-from gcs_windplan.geo.frame import LocalFrame
 from gcs_windplan.planning.cost import CostChoice
-from gcs_windplan.scene import Airspace, CollisionTest
-from gcs_windplan.terrain import Obstacles, Terrain
+from gcs_windplan.scene import CollisionTest, Scene
 from gcs_windplan.vehicle import Airframe, PowerModel, Vehicle
-from gcs_windplan.wind.field import WindField
 
 Finish: TypeAlias = Literal["land", "return", "hold"]
 AltitudeReference: TypeAlias = Literal["relative", "amsl"]
@@ -134,16 +130,13 @@ class Request:
     heights above ground [m], empty for an automatic choice; `margin` [m] is how far the veil reaches beyond the sites.
     A vehicle that returns at the end flies home at `return_height` above home [m], or higher if it is; or to the
     nearest `rally` point. `fence`, `fence_return` (where a vehicle that broke the fence flies to) and `rally` go into
-    the mission beside the route. `members` are the winds of an ensemble, `wind` their mean; the route is planned for
-    the `robust` quantile of its legs' cost over them. `gusts` are the forecast's, one field a member, where it tells
-    any. With an `airframe` the energy is known, and each leg's airspeed may be chosen (`free_airspeed`). `locate` puts
-    file and line to a problem that names a field.
+    the mission beside the route. Where the scene's wind is an ensemble's, the route is planned for the `robust`
+    quantile of its legs' cost over the members. With an `airframe` the energy is known, and each leg's airspeed may
+    be chosen (`free_airspeed`). `locate` puts file and line to a problem that names a field.
     """
 
     name: str
-    frame: LocalFrame
-    terrain: Terrain
-    wind: WindField
+    scene: Scene
     vehicle: Vehicle
     start: Site
     goal: Site
@@ -156,19 +149,14 @@ class Request:
     graph: Uniform | Roadmap = field(default_factory=Uniform)
     layers: tuple[float, ...] = ()
     margin: float | None = None
-    obstacles: Obstacles | None = None
-    airspace: Airspace = field(default_factory=Airspace)
     collision_test: CollisionTest | None = None
-    departure: datetime | None = None
     finish: Finish = "land"
     return_height: float = 15.0
     export: Export = field(default_factory=Export)
     fence: tuple[FenceArea, ...] = ()
     fence_return: Site | None = None
     rally: tuple[Site, ...] = ()
-    members: tuple[WindField, ...] = ()
     robust: float = 0.5
-    gusts: tuple[WindField, ...] = ()
     airframe: Airframe | None = None
     free_airspeed: bool = False
     locate: Callable[[Problem], Problem] = _unlocated
@@ -188,5 +176,9 @@ class Request:
         """Rally points and the fence's return point: where the vehicle may go instead of along the route."""
         return self.rally if self.fence_return is None else (*self.rally, self.fence_return)
 
+    def in_the_mean(self) -> Request:
+        """The same without the members of an ensemble: only their mean blows."""
+        return replace(self, scene=replace(self.scene, members=()))
+
     def __repr__(self) -> str:
-        return f"Request({self.name!r}: {self.cost} over {self.terrain.name} in {self.wind.name})"
+        return f"Request({self.name!r}: {self.cost} over {self.scene.terrain.name} in {self.scene.wind.name})"

@@ -144,7 +144,7 @@ def _landing(problem: PlanningProblem, target: FloatArray) -> float:
     """What sinking from a target (3,) to the ground under it takes [J]; a fixed-wing circles down as fast."""
     request = problem.request
     assert request.power is not None
-    ground = float(request.terrain.heights_at(target[None])[0])
+    ground = float(request.scene.terrain.heights_at(target[None])[0])
     airspeed = 0.0 if request.vehicle.hovers else request.vehicle.airspeed
     watts = float(request.power.watts(airspeed, -request.vehicle.descent, air_density(float(target[2]))))
     return watts * max(float(target[2]) - ground, 0.0) / request.vehicle.descent

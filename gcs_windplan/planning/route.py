@@ -97,12 +97,12 @@ def cost_between(
     cost_index: float = math.inf,
 ) -> SectionCost:
     """The cost at work between two sites, the first of which is left at `begin` [s since departure]."""
-    request = problem.request
+    request, scene = problem.request, problem.request.scene
     straight = float(np.linalg.norm(goal - start))
     edge = problem.graph.veil.edge_length
     power = choice.leg_cost.power(problem.power, cost_index)
     return SectionCost(
-        choice, request.wind, problem.vehicle, edge, straight, begin, request.members, request.robust, power=power,
+        choice, scene.wind, problem.vehicle, edge, straight, begin, scene.members, request.robust, power=power,
         waypoint_seconds=_CORNER if request.vehicle.hovers else 0.0, limits=problem.graph.limits,
     )  # fmt: skip
 
@@ -144,7 +144,7 @@ def _airspeeds(
         return np.full(len(points) - 1, fastest)
     return best_airspeeds(
         points,
-        request.wind,
+        request.scene.wind,
         request.vehicle,
         request.airframe.power,
         (slowest, fastest),
@@ -158,7 +158,7 @@ def _refuse(problem: PlanningProblem, points: FloatArray, begin: float) -> NoRet
     request = problem.request
     if problem.graph.limits:
         strongest_along(request, points, begin).check_limits(request.limits, request.robust)
-    fly(points, request.frame, request.terrain, request.wind, problem.vehicle, begin)  # says on which leg, if on one
+    fly(points, request.scene, problem.vehicle, begin)  # says on which leg, if on one
     raise NoRouteError(
         "the route found can be flown in the members' mean, but in too few of the members where their wind is looked at"
         " closely: a finer graph, more airspeed, another departure, or a lower `robust`.",

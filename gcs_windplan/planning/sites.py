@@ -39,7 +39,7 @@ def choose_area(request: Request, sites: FloatArray) -> Extent:
     margin = choose_margin(sites, request.margin)
     west, south = sites[:, :2].min(axis=0) - margin
     east, north = sites[:, :2].max(axis=0) + margin
-    edge = request.terrain.extent
+    edge = request.scene.terrain.extent
     return Extent(max(west, edge.west), max(south, edge.south), min(east, edge.east), min(north, edge.north))
 
 
@@ -97,7 +97,7 @@ def site_points(request: Request, sites: Sequence[Site], layers: Sequence[float]
     """Sites as points (n, 3) [m]; a height over unknown terrain is NaN where it counts from the ground."""
     points = np.empty((len(sites), 3))
     for i, site in enumerate(sites):
-        ground = _ground(request.terrain, site.east, site.north)
+        ground = _ground(request.scene.terrain, site.east, site.north)
         points[i] = site.east, site.north, _height(site, ground, layers[0])
     return points
 
@@ -240,13 +240,13 @@ def _low_return(way: str, levels: tuple[float, float], lowest: float, clearance:
 
 def windless_sites(request: Request, points: FloatArray) -> list[Problem]:
     """The sites (n, 3) at which the wind is not known."""
-    unknown = np.isnan(request.wind.at(points)[:, 0])
+    unknown = np.isnan(request.scene.wind.at(points)[:, 0])
     text = (
         "lies above the highest level of the wind ({}): lower it, take a file with higher levels, or carry it up with"
         " `profile`"
     )
     return [
-        Problem(text.format(request.wind.name), site.field)
+        Problem(text.format(request.scene.wind.name), site.field)
         for site, gone in zip(request.sites, unknown, strict=True)
         if gone
     ]

@@ -32,9 +32,9 @@ def draw_map(plans: Sequence[PlannedRoute], dpi: int = 120) -> bytes:
     """
     plan, request = plans[0], plans[0].request
     routes = [_route(one) for one in plans]
-    extent = maps.frame_of([route.line for route in routes], request.terrain.extent)
-    airspace = request.airspace
-    seen = () if request.obstacles is None else tuple(request.obstacles.triangles[:, :, :2])
+    extent = maps.frame_of([route.line for route in routes], request.scene.terrain.extent)
+    airspace = request.scene.airspace
+    seen = () if request.scene.obstacles is None else tuple(request.scene.obstacles.triangles[:, :, :2])
     areas = [outline_of(prism, "keep-out") for prism in airspace.keep_out]
     areas += [outline_of(prism, "keep-in") for prism in airspace.keep_in]
     places = [MapPlace(_name(s.field), s.east, s.north, _MARKERS.get(s.field, "D")) for s in request.sites]
@@ -58,8 +58,8 @@ def draw_profile(plan: PlannedRoute, dpi: int = 120) -> bytes:
     ground_speed, airspeed, wind_along = np.repeat(speeds, 2, axis=0).T  # at both ends of each leg
     view = ProfileView(
         f"{request.name}: at least {totals.clearance:.1f} m and at most {totals.height:.1f} m above ground",
-        along=along, ground=request.terrain.heights_at(under), flown=flown, altitude=corners[:, 2],
-        clearance=request.clearance, max_height=request.max_height, vertical_datum=request.terrain.vertical_datum,
+        along=along, ground=request.scene.terrain.heights_at(under), flown=flown, altitude=corners[:, 2],
+        clearance=request.clearance, max_height=request.max_height, vertical_datum=request.scene.terrain.vertical_datum,
         speeds_at=np.repeat(flown, 2)[1:-1], ground_speed=ground_speed, airspeed=airspeed, wind_along=wind_along,
     )  # fmt: skip
     return profiles.draw_view(view, dpi)
@@ -84,7 +84,7 @@ def _stops(plan: PlannedRoute) -> list[MapPlace]:
 def _ground(plan: PlannedRoute, extent: Extent) -> Ground:
     """The terrain in an extent."""
     x, y = maps.grid(extent, _PIXELS)
-    heights = plan.request.terrain.heights_at(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    heights = plan.request.scene.terrain.heights_at(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
     return Ground(extent.west, extent.south, extent.east, extent.north, heights)
 
 
@@ -92,15 +92,15 @@ def _wind(plan: PlannedRoute, extent: Extent) -> WindArrows:
     """The wind at the route's mean height above ground, where it need be known."""
     request = plan.request
     places = _arrow_places(plan, extent)
-    ground = request.terrain.heights_at(places)
+    ground = request.scene.terrain.heights_at(places)
     above = float(np.mean([w.above_ground for w in plan.waypoints]))
     points = np.column_stack([places, ground + above])[np.isfinite(ground)]
-    wind = request.wind.at(points)
+    wind = request.scene.wind.at(points)
     known = np.isfinite(wind[:, 0])
     where = f"{above:.0f} m above ground"
-    if len(request.wind.times) > 1:
+    if len(request.scene.wind.times) > 1:
         where += ", at the departure"
-    if request.members:
+    if request.scene.members:
         where += ", mean of all members"
     return WindArrows(points[known, :2], wind[known, :2], where, _ARROWS)
 

@@ -60,13 +60,14 @@ def simulator_world(firmware: Firmware, wind: WindField | None = None) -> World:
 
 def planned_world(request: Request, home: Home | None = None, wind: WindField | None = None) -> World:
     """The world of a mission file: its wind and terrain, home on the ground at its start."""
-    frame, terrain = request.frame, request.terrain
+    scene = request.scene
     if home is None:
         start = request.start
         place = np.array([[start.east, start.north]])
-        height = float(terrain.heights_at(place)[0])
+        height = float(scene.terrain.heights_at(place)[0])
         if not np.isfinite(height):
             raise InputError("the ground at the mission's start is not known: give --home with an altitude")
-        latitude, longitude = frame.to_geographic(place)
+        latitude, longitude = scene.frame.to_geographic(place)
         home = Home(GeoPoint(float(latitude[0]), float(longitude[0])), height)
-    return World(home, frame, wind if wind is not None else request.wind, terrain, departure=request.departure)
+    wind = scene.wind if wind is None else wind
+    return World(home, scene.frame, wind, scene.terrain, departure=scene.departure)

@@ -15,6 +15,7 @@ from gcs_windplan.mission.firmware.ardupilot import MOTION
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Airframe, Battery, PowerTable, Vehicle
 from gcs_windplan.wind import Calm
+from tests.scenes import in_scene
 
 FRAME = LocalFrame(GeoPoint(46.8, 9.8))
 GROUND = 500.0  # [m] the plain's height
@@ -84,7 +85,7 @@ def case(*items: MissionItem, mission: dict[str, Any] | None = None, **more: Any
         "cruise": 15.0,
         "limits": AssessmentLimits(),
     }
-    return Case(mission=flown, **{**known, **more})
+    return Case(mission=flown, **in_scene(**{**known, **more}))
 
 
 def judged(*items: MissionItem, **more: Any) -> Assessment:

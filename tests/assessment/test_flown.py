@@ -16,6 +16,7 @@ from gcs_windplan.flight.duration import duration_of
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
 from gcs_windplan.mission.firmware.px4 import MOTION as PX4
+from gcs_windplan.scene import Scene
 from gcs_windplan.terrain import flat
 from gcs_windplan.vehicle import air_density, return_seconds
 from gcs_windplan.wind import Calm, ConstantWind
@@ -61,7 +62,7 @@ def test_twelve_missions_as_a_real_arducopter_flew_them(shared_data):
         ground = flat(50_000.0, mission.home.altitude)
         review = assess(
             Case(
-                flight["name"], mission, frame, ground, ConstantWind(float(wind[0]), float(wind[1])), "ardupilot",
+                flight["name"], mission, Scene(frame, ground, ConstantWind(*map(float, wind[:2]))), "ardupilot",
                 "multicopter", pace, 10.0,
             )
         )  # fmt: skip
@@ -228,7 +229,16 @@ def test_a_mission_over_the_date_line():
     ]
     mission = MissionItems(tuple(items), Home(frame.origin, 0.0), "ardupilot", "multicopter")
     review = assess(
-        Case("line", mission, frame, flat(9000.0), Calm(), "ardupilot", "multicopter", SWIFT, 10.0, home_is_given=True)
+        Case(
+            "line",
+            mission,
+            Scene(frame, flat(9000.0), Calm()),
+            "ardupilot",
+            "multicopter",
+            SWIFT,
+            10.0,
+            home_is_given=True,
+        )
     )
     assert review.totals.distance == pytest.approx(1500, abs=0.01)
 

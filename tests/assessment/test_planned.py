@@ -34,7 +34,7 @@ def test_a_plan_keeps_its_figures(gallery, name):
     plan = plan_routes(request, [request.cost])[0]
     review = assess_plan(plan)
     flown = flown_duration(plan)
-    steady = len(request.wind.times) <= 1
+    steady = len(request.scene.wind.times) <= 1
     for leg, planned, start, end in zip(review.legs, plan.legs, review.stops, review.stops[1:], strict=False):
         assert leg.clearance == pytest.approx(planned.clearance, abs=one_millimetre)
         assert leg.height == pytest.approx(planned.height, abs=one_millimetre)
@@ -44,7 +44,7 @@ def test_a_plan_keeps_its_figures(gallery, name):
             assert leg.wind_along == pytest.approx(planned.wind_along, abs=three_cm_a_second)
             assert leg.wind_across == pytest.approx(planned.wind_across, abs=three_cm_a_second)
             assert (leg.wind_along, leg.wind_across) == pytest.approx(
-                sampled_wind(request.wind, start, end), abs=one_cm_a_second
+                sampled_wind(request.scene.wind, start, end), abs=one_cm_a_second
             )
     assert [leg.seconds for leg in review.legs[: len(flown.legs)]] == pytest.approx(
         [leg.seconds - leg.hold for leg in flown.legs], abs=a_hundredth

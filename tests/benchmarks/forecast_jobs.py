@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.measuring import Measured, timed
+from tests.scenes import changed
 
 FRONT = Path(__file__).resolve().parents[2] / "missions" / "front.yaml"
 SHAPE = (9, 10, 30, 30)  # times, levels, rows, columns
@@ -80,8 +81,8 @@ def changing_plan(spacing: str) -> Measured:
     from gcs_windplan.planning.request import Uniform
 
     request = _across(FRONT)
-    control = replace(
-        request, airframe=None, wind=request.members[0], members=(), robust=0.5, layers=(50.0, 80.0, 110.0),
+    control = changed(
+        request, airframe=None, wind=request.scene.members[0], members=(), robust=0.5, layers=(50.0, 80.0, 110.0),
         graph=Uniform(float(spacing), 16),
     )  # fmt: skip
     plan_route(replace(control, graph=Uniform(400.0, 16)))
@@ -112,7 +113,7 @@ def departures(count: str, cores: str) -> Measured:
     took = time.perf_counter() - begin
     answer = {
         "departures": len(found), "flown": sum(one.seconds is not None for one in found),
-        "worked": sum(one.worked for one in found), "members": len(request.members),
+        "worked": sum(one.worked for one in found), "members": len(request.scene.members),
     }  # fmt: skip
     return replace(timed(dict, list, 1), seconds=took, answer=answer)
 

@@ -124,7 +124,7 @@ def plan(nodes: str, neighbours: str) -> Measured:
     from gcs_windplan.planning.request import Uniform
 
     request = read_request(MISSION)
-    box = request.terrain.extent
+    box = request.scene.terrain.extent
     spacing = ((box.east - box.west) * (box.north - box.south) / float(nodes)) ** 0.5
     coarse = replace(request, layers=(50.0,), margin=40_000.0, graph=Uniform(150.0, int(neighbours)))
     fine = replace(coarse, graph=Uniform(spacing, int(neighbours)))

@@ -43,12 +43,12 @@ class TestGallery:
         share = np.linspace(0, 1, 2000)[:, None]
         for a, b in pairwise(points):
             along = a + share * (b - a)
-            above = along[:, 2] - request.terrain.heights_at(along)
+            above = along[:, 2] - request.scene.terrain.heights_at(along)
             assert above.min() >= request.clearance - one_millimetre
             assert above.max() <= (request.max_height or math.inf) + one_millimetre
-        assert not request.airspace.breaches(points[:-1], points[1:]).any()
-        if request.obstacles is not None:
-            assert (request.obstacles.leg_margins(points[:-1], points[1:]) >= -one_millimetre).all()
+        assert not request.scene.airspace.breaches(points[:-1], points[1:]).any()
+        if request.scene.obstacles is not None:
+            assert (request.scene.obstacles.leg_margins(points[:-1], points[1:]) >= -one_millimetre).all()
         assert plan.cost <= plan.graph_cost * (1 + 1e-12)
 
     def test_speeds_follow_the_plan(self, path: Path):
@@ -78,7 +78,7 @@ class TestGallery:
             slack = 0.02 if abs(above_home) < 0.02 else one_millimetre
             assert item.altitude == pytest.approx(above_home, abs=slack)
         home = np.array([[plan.waypoints[0].east, plan.waypoints[0].north]])
-        assert mission.home.altitude == pytest.approx(float(plan.request.terrain.heights_at(home)[0]))
+        assert mission.home.altitude == pytest.approx(float(plan.request.scene.terrain.heights_at(home)[0]))
 
     def test_files_are_read_alike_by_everyone(
         self, path: Path, tmp_path: Path, mavwp_load: Callable[[Path], list[Any]], mission_raw: Any
@@ -116,7 +116,7 @@ def test_a_route_keeps_to_its_own_fence(path: Path):
     points = np.array([(w.east, w.north) for w in plan.waypoints])
     share = np.linspace(0, 1, 400)[:, None]
     flown = np.concatenate([a + share * (b - a) for a, b in pairwise(points)])
-    places = list(zip(*plan.request.frame.to_geographic(flown), strict=True))
+    places = list(zip(*plan.request.scene.frame.to_geographic(flown), strict=True))
     places += [(rally.point.latitude_deg, rally.point.longitude_deg) for rally in mission.rally]
     assert not [(place, broken) for place in places if (broken := breaches(fence, *place))]
 
@@ -161,7 +161,7 @@ def test_a_mission_of_the_gallery_has_a_fence_and_rally_points():
     assert mission.fence is not None
     assert [(len(p.corners), p.inclusion) for p in mission.fence.polygons] == [(5, False), (4, True)]
     assert [(c.radius, c.inclusion) for c in mission.fence.circles] == [(350.0, False)]
-    terrain = plan.request.terrain
+    terrain = plan.request.scene.terrain
     for rally, site in zip(mission.rally, plan.request.rally, strict=True):
         ground = float(terrain.heights_at(np.array([[site.east, site.north]]))[0])
         planned_height = ground + 200 * 0.3048 - mission.home.altitude

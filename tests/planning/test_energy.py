@@ -13,6 +13,7 @@ from gcs_windplan.flight import fly, fly_legs
 from gcs_windplan.flight.energy import leg_energies
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
 from gcs_windplan.planning.planner import plan_route
+from gcs_windplan.scene import Scene
 from gcs_windplan.vehicle import Multirotor, Vehicle, air_density
 from gcs_windplan.wind import Calm, ConstantWind
 from tests.ensembles import FRAME, Everywhere, divided
@@ -92,12 +93,12 @@ def test_a_leg_that_cannot_be_flown_has_no_energy():
 def test_a_flight_carries_the_energy_of_its_legs_and_ends():
     dem = rough_dem(1, relief=0.0)
     points = np.array([[0.0, 0, 60], [500, 0, 60], [500, 500, 80]])
-    flight = fly(points, FRAME, dem, Calm(), VEHICLE, power=LIU)
+    flight = fly(points, Scene(FRAME, dem, Calm()), VEHICLE, power=LIU)
     assert [leg.energy for leg in flight.legs] == pytest.approx(list(energy(points, Calm())), abs=one_joule)
     assert flight.totals.energy == pytest.approx(sum(leg.energy for leg in flight.legs))
     assert flight.totals.takeoff_energy == pytest.approx(20.0 * float(LIU.watts(0.0, 3.0, air_density(60.0))))
     assert flight.totals.landing_energy == pytest.approx(40.0 * float(LIU.watts(0.0, -2.0, air_density(80.0))))
-    assert fly(points, FRAME, dem, Calm(), VEHICLE).totals.energy is None
+    assert fly(points, Scene(FRAME, dem, Calm()), VEHICLE).totals.energy is None
 
 
 def test_the_spread_over_members_holds_their_energies(gallery):
@@ -107,7 +108,7 @@ def test_the_spread_over_members_holds_their_energies(gallery):
     vehicle = plan.request.vehicle
     each = [
         float(leg_energies(points, fly_legs(points, member, vehicle)[1], member, vehicle, airframe.power).sum())
-        for member in plan.request.members
+        for member in plan.request.scene.members
     ]
     assert plan.spread.energies == pytest.approx(each, rel=1e-9)
     assert plan.spread.energy_at(0.9) > plan.spread.energy_at(0.1)

@@ -13,6 +13,7 @@ from gcs_windplan.flight import fly_legs
 from gcs_windplan.planning.ensemble import Spread
 from gcs_windplan.planning.planner import PlannedRoute, plan_route
 from tests.ensembles import Corridor, Everywhere, Gate, divided, request
+from tests.scenes import changed
 
 
 def seconds_in(plan: PlannedRoute, wind) -> float:
@@ -31,7 +32,7 @@ def test_the_robust_route_is_better_at_its_quantile_than_the_median_one():
 
 def test_the_spread_is_the_same_route_flown_in_every_member():
     plan = plan_route(divided(0.5))
-    each = [seconds_in(plan, member) for member in plan.request.members]
+    each = [seconds_in(plan, member) for member in plan.request.scene.members]
     assert plan.spread.seconds == pytest.approx(each, rel=1e-9)
     assert plan.spread.at(0.5) == pytest.approx(sorted(each)[4])
     assert plan.spread.at(0.1) == pytest.approx(sorted(each)[0])
@@ -45,7 +46,7 @@ def test_members_that_cannot_fly_it_come_last():
 
 
 def test_without_an_ensemble_there_is_no_spread():
-    assert plan_route(replace(divided(), members=())).spread is None
+    assert plan_route(divided().in_the_mean()).spread is None
 
 
 def test_where_waiting_pays_a_note_says_so():
@@ -66,7 +67,7 @@ def test_a_route_that_too_few_members_can_fly_is_refused():
     """Three of ten members have a gale all over: no route is good for nine of them."""
     calm, gale = Corridor(2.0), Everywhere(-20.0)
     members = (calm,) * 7 + (gale,) * 3
-    asked = replace(divided(0.7), members=members, wind=calm)
+    asked = changed(divided(0.7), members=members, wind=calm)
     plan = plan_route(asked)
     assert plan.spread.unflyable == 3
     with pytest.raises(gw.NoRouteError, match=r"no route|members only"):

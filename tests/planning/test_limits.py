@@ -25,6 +25,7 @@ from gcs_windplan.planning.request import Limits, Roadmap, Site, Uniform
 from gcs_windplan.wind import ConstantWind, PowerLaw, ProfileWind
 from gcs_windplan.wind.field import Steady
 from tests.ensembles import Corridor, Everywhere, Gate, divided, request
+from tests.scenes import changed
 from tests.worlds import WavyWind, rough_dem
 
 WITHOUT_AIRFRAME = [name for name in COSTS if name != "energy"]  # that one asks for an airframe
@@ -58,7 +59,7 @@ def met(plan, fields=None, samples=4000):
     share = np.linspace(0, 1, samples)[:, None]
     return max(
         float(np.nanmax(np.hypot(*field.at(a + share * (b - a), s + share[:, 0] * (t - s))[:, :2].T)))
-        for field in fields or (plan.request.wind,)
+        for field in fields or (plan.request.scene.wind,)
         for a, b, s, t in zip(corners[:-1], corners[1:], times[:-1], times[1:], strict=True)
     )
 
@@ -72,7 +73,7 @@ def test_a_route_stays_out_of_the_wind_that_is_too_strong():
     assert 3.5 < met(bound) <= 4.0
     assert bound.strongest.wind == pytest.approx(met(bound), abs=0.01)
     assert free.totals.seconds < bound.totals.seconds < 180.0  # 1.8 km at 10 m/s: half in the corridor's edge
-    assert bound.request.wind == Corridor(6.0)
+    assert bound.request.scene.wind == Corridor(6.0)
 
 
 @pytest.mark.parametrize("graph", [Uniform(60.0), Uniform(60.0, 64), Roadmap(nodes=700, seed=3)])
@@ -171,21 +172,21 @@ def test_members_that_break_the_limit_count_as_ones_that_cannot_fly():
     plan = plan_route(asked)
     assert plan.spread.unflyable in (0, 3)  # they are closed in the corridor only
     assert plan.strongest.within_limits(asked.limits) == 10 - plan.spread.unflyable
-    assert met(plan, asked.members[:1]) <= 6.5
+    assert met(plan, asked.scene.members[:1]) <= 6.5
     robust = plan_route(replace(asked, robust=0.9))
     assert robust.strongest.within_limits(asked.limits) >= 9
     with pytest.raises(RequestError, match=r"limits\.wind"):
-        plan_route(replace(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
+        plan_route(changed(asked, wind=Everywhere(7.0), members=(Everywhere(7.0),) * 10))
 
 
 def test_gusts_are_limited_where_the_forecast_tells_them():
     asked = request(wind=Corridor(6.0), gusts=(Corridor(9.0),), limits=Limits(gust=6.0))
     assert plan_route(replace(asked, limits=Limits(wind=7.0))).strongest.gust > 8.8
     bound = plan_route(asked)
-    assert met(bound, asked.gusts) <= 6.0
-    assert bound.strongest.gust == pytest.approx(met(bound, asked.gusts), abs=0.01)
+    assert met(bound, asked.scene.gusts) <= 6.0
+    assert bound.strongest.gust == pytest.approx(met(bound, asked.scene.gusts), abs=0.01)
     with pytest.raises(RequestError) as caught:
-        plan_route(replace(asked, gusts=()))
+        plan_route(changed(asked, gusts=()))
     (problem,) = caught.value.problems
     assert problem.field == "limits.gust"
     assert problem.message.startswith("the forecast has no gusts (corridor): leave the limit out")

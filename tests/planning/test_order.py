@@ -23,6 +23,7 @@ from gcs_windplan.wind import Calm, ConstantWind
 from gcs_windplan.wind.field import Steady
 from tests.ensembles import Gate, divided, request
 from tests.jobs.missionfile.missions import complaints, mission, read
+from tests.scenes import changed
 from tests.worlds import ShiftingWind, WavyWind, rough_dem
 
 TIME = gw.CostChoice("time")
@@ -133,7 +134,7 @@ def test_wind_makes_another_order_than_the_map(blows_from):
     south is all one: what it gives on the way there it takes on the way back, as start and goal stay where they are."""
     places = vias((700.0, -700.0), (300.0, -300.0), (200.0, -800.0), (800.0, 200.0))
     asked = request(wind=Calm(), via=places, order="free", goal=Site("goal", -900.0, 300.0))
-    windy = replace(asked, wind=ConstantWind.from_direction(7.0, blows_from))
+    windy = changed(asked, wind=ConstantWind.from_direction(7.0, blows_from))
     assert (chosen(asked), chosen(windy)) == ([2, 0, 3, 1], [2, 0, 1, 3])
     assert graph_cost(windy, [2, 0, 1, 3]) < 0.97 * graph_cost(windy, [2, 0, 3, 1])
     assert graph_cost(asked, [2, 0, 3, 1]) < graph_cost(asked, [2, 0, 1, 3])
@@ -197,7 +198,7 @@ def test_one_via_needs_no_order():
 
 def test_over_an_ensemble_the_mean_counts():
     asked = replace(divided(), via=scattered(2, 3), order="free")
-    mean = replace(asked, members=())
+    mean = asked.in_the_mean()
     assert chosen(asked) == chosen(mean)
 
 
@@ -295,6 +296,6 @@ def test_the_mission_file_says_so_too():
 def test_the_gallerys_round_is_another_one_in_still_air(gallery):
     asked = read_request(gallery / "rounds.yaml")
     assert asked.order == "free"
-    windy, calm = (chosen(one) for one in (asked, replace(asked, wind=Calm())))
+    windy, calm = (chosen(one) for one in (asked, changed(asked, wind=Calm())))
     assert windy != calm
     assert graph_cost(asked, windy) < 0.92 * min(graph_cost(asked, calm), graph_cost(asked, calm[::-1]))

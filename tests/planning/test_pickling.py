@@ -27,12 +27,13 @@ def corners(plan: PlannedRoute) -> list[tuple[float, ...]]:
 def answers(asked: Request) -> list:
     """What a request's world says at its sites and between them."""
     sites = np.array([(site.east, site.north, 0.0) for site in asked.sites])
-    sites[:, 2] = asked.terrain.heights_at(sites) + 40.0
-    told = [sites[:, 2], asked.terrain.leg_heights(sites[:-1], sites[1:]), *(one.at(sites) for one in asked.gusts)]
-    told += [one.at(sites) for one in (asked.wind, *asked.members)]
-    told.append(asked.airspace.breaches(sites[:-1], sites[1:]))
-    if asked.obstacles is not None:
-        told.append(asked.obstacles.leg_margins(sites[:-1], sites[1:]))
+    sites[:, 2] = asked.scene.terrain.heights_at(sites) + 40.0
+    scene = asked.scene
+    told = [sites[:, 2], scene.terrain.leg_heights(sites[:-1], sites[1:]), *(one.at(sites) for one in scene.gusts)]
+    told += [one.at(sites) for one in (scene.wind, *scene.members)]
+    told.append(asked.scene.airspace.breaches(sites[:-1], sites[1:]))
+    if asked.scene.obstacles is not None:
+        told.append(asked.scene.obstacles.leg_margins(sites[:-1], sites[1:]))
     if asked.power is not None:
         told.append(np.asarray(asked.power.watts(12.0, 0.5)))
     problem = asked.locate(Problem("is wrong", "vehicle.airspeed"))

@@ -22,6 +22,7 @@ from gcs_windplan.scene import Airspace, Prism
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import Calm, ConstantWind, PowerLaw, ProfileWind
+from tests.scenes import in_scene
 from tests.worlds import WavyWind, rough_dem
 
 FRAME = gw.LocalFrame(gw.GeoPoint(46.8, 9.8))
@@ -33,7 +34,7 @@ def request(dem: Dem, **changes) -> Request:
         "name": "test", "frame": FRAME, "terrain": dem, "wind": Calm(), "vehicle": Vehicle(12.0), "start": start,
         "goal": goal, "clearance": 25.0, "max_height": 110.0, "graph": Uniform(60.0), "layers": (40.0, 80.0),
     } | changes  # fmt: skip
-    return Request(**whole)
+    return Request(**in_scene(**whole))
 
 
 def smallest_height(dem: Dem, plan) -> float:
@@ -138,7 +139,7 @@ def test_a_keep_out_is_flown_around():
     asked = request(rough_dem(1, relief=10.0), airspace=Airspace(keep_out=(Prism("school", corners),)))
     plan = plan_route(asked)
     points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
-    assert not asked.airspace.breaches(points[:-1], points[1:]).any()
+    assert not asked.scene.airspace.breaches(points[:-1], points[1:]).any()
     assert plan.totals.distance > math.hypot(1420.0, 1330.0) + 10
 
 

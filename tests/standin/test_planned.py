@@ -50,7 +50,7 @@ def test_a_planned_mission_is_flown_as_planned(autopilot, tmp_path) -> None:
             nearest[waypoint.number - 1] = min(nearest[waypoint.number - 1], gap)
         if nearest[0] < 0.5 and nearest[len(plan.waypoints) - 1] > 0.5:
             en_route.append(flown.time)
-            ground = float(request.terrain.heights_at(np.array([[body.east, body.north]]))[0])
+            ground = float(request.scene.terrain.heights_at(np.array([[body.east, body.north]]))[0])
             lowest = min(lowest, body.altitude - ground)
     assert max(nearest.values()) < 0.5  # [m] a step of the clock, and ArduPilot's centimetres
     assert lowest > 30.0 - 0.05

@@ -25,7 +25,7 @@ _at_home = partial(Finding, item=0, distance=0.0, unit="m")
 
 def home(mission: AssessedMission) -> Iterator[Found]:
     """A home that is not on the terrain's ground: another datum, or another place."""
-    terrain = mission.case.terrain
+    terrain = mission.case.scene.terrain
     east, north, altitude = mission.track.course.home
     place = np.array(mission.track.course.home)
     under = float(terrain.heights_at(np.array([[east, north]]))[0])
@@ -44,7 +44,7 @@ def first_leg(mission: AssessedMission) -> Iterator[Found]:
     point = first_place(case.mission)
     if limit is None or point is None:
         return
-    east, north = case.frame.to_local(point.latitude_deg, point.longitude_deg)[0]
+    east, north = case.scene.frame.to_local(point.latitude_deg, point.longitude_deg)[0]
     far = math.hypot(east - mission.track.course.home[0], north - mission.track.course.home[1])
     if far > limit:
         item = next(number for number, item in enumerate(case.mission.items, start=1) if item.has_place)
@@ -57,7 +57,7 @@ def landing(mission: AssessedMission) -> Iterator[Found]:
     """Landings whose items name another height than the ground has there."""
     hovers = mission.case.hovers
     for item, place in dict(mission.track.course.landings).items():
-        under = float(mission.case.terrain.heights_at(np.array([place]))[0])
+        under = float(mission.case.scene.terrain.heights_at(np.array([place]))[0])
         named = place[2]
         if math.isnan(under) or abs(named - under) <= _LANDING_APART:
             continue

@@ -19,7 +19,7 @@ _TOUCH = 2.0  # [m] a fixed-wing may be so far below the terrain model's ground 
 
 def ground(mission: AssessedMission) -> Iterator[Found]:
     """Legs over ground that is not known."""
-    terrain = mission.case.terrain
+    terrain = mission.case.scene.terrain
     for leg, move in _legs(mission):
         place = mission.heights.unknown_at[move]
         if np.isnan(place[0]):
@@ -47,7 +47,7 @@ def clearance(mission: AssessedMission) -> Iterator[Found]:
 
 def circles(mission: AssessedMission) -> Iterator[Found]:
     """Circles at loiters, too near to the ground."""
-    limit, terrain = mission.case.limits.clearance or 0.0, mission.case.terrain
+    limit, terrain = mission.case.limits.clearance or 0.0, mission.case.scene.terrain
     for leg, move in _legs(mission):
         radius = mission.track.moves[move].radius
         if radius <= 0:
@@ -80,7 +80,7 @@ def height(mission: AssessedMission) -> Iterator[Found]:
 
 def obstacles(mission: AssessedMission) -> Iterator[Found]:
     """Legs, take-offs and landings too near to an obstacle."""
-    standing, track = mission.case.obstacles, mission.track
+    standing, track = mission.case.scene.obstacles, mission.track
     if standing is None or not len(track.starts):
         return
     margins = standing.leg_margins(track.starts, track.ends)
@@ -93,7 +93,7 @@ def obstacles(mission: AssessedMission) -> Iterator[Found]:
 
 def _nearest(mission: AssessedMission, piece: int) -> FloatArray:
     """Where a piece is nearest to an obstacle: the half that is nearer is kept."""
-    standing, track = mission.case.obstacles, mission.track
+    standing, track = mission.case.scene.obstacles, mission.track
     assert standing is not None
     start, end = track.starts[piece], track.ends[piece]
     for _ in range(20):

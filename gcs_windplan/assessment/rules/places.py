@@ -83,7 +83,7 @@ def at_stop(
 def located(found: Sequence[Found], case: Case) -> list[Finding]:
     """The findings with their latitudes and longitudes."""
     places = np.array([place for _, place in found if place is not None]).reshape(-1, 3)
-    latitudes, longitudes = map(iter, case.frame.to_geographic(places)) if len(places) else (iter(()), iter(()))
+    latitudes, longitudes = map(iter, case.scene.frame.to_geographic(places)) if len(places) else (iter(()), iter(()))
     return [
         finding
         if place is None

@@ -42,7 +42,7 @@ def flyable(mission: AssessedMission) -> Iterator[Found]:
 
 def flyable_in_members(mission: AssessedMission) -> Iterator[Found]:
     """Legs on which the wind stops the vehicle in members of an ensemble, though not in their mean."""
-    stopped, members = _stopped_in_members(mission), len(mission.case.members)
+    stopped, members = _stopped_in_members(mission), len(mission.case.scene.members)
     for first, last in runs([bool(count) for count in stopped]):
         worst = first + int(np.argmax(stopped[first : last + 1]))
         leg, count = mission.legs[worst], int(stopped[worst])
@@ -58,7 +58,7 @@ def _stopped_in_members(mission: AssessedMission) -> FloatArray:
     flown, case, samples = mission.flown, mission.case, mission.flown.samples
     command = commands_of(flown.track, samples.move, samples.direction, flown.peaks, case)
     counts = np.zeros(len(mission.track.moves))
-    for field in case.members:
+    for field in case.scene.members:
         winds = known_wind(field, samples.places, flown.passed).filled
         counts += samples.sums(motion_in(winds, command, case).stopped.astype(np.float64)) > 0
     return np.asarray(np.where(flown.stopped > 0, 0.0, counts)[mission.track.leg_moves])

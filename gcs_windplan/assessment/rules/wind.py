@@ -45,7 +45,7 @@ def gust(mission: AssessedMission) -> Iterator[Found]:
 def winds_of(mission: AssessedMission) -> FloatArray:
     """The wind at each sample (m, k) [m/s] in each member of an ensemble, or the one wind."""
     flown = mission.flown
-    members = [known_wind(field, flown.samples.places, flown.passed).winds for field in mission.case.members]
+    members = [known_wind(field, flown.samples.places, flown.passed).winds for field in mission.case.scene.members]
     return np.array([np.hypot(one[:, 0], one[:, 1]) for one in members or [flown.wind.winds]])
 
 
@@ -57,7 +57,7 @@ def strongest_wind(mission: AssessedMission) -> float:
 def gusts_of(mission: AssessedMission) -> FloatArray | None:
     """The strongest gust of any member at each sample (k,) [m/s], None where none are known."""
     samples, passed = mission.flown.samples, mission.flown.passed
-    members = [known_wind(field, samples.places, passed).winds for field in mission.case.gusts]
+    members = [known_wind(field, samples.places, passed).winds for field in mission.case.scene.gusts]
     if not members or not len(passed):
         return None
     return np.asarray(np.max([np.hypot(one[:, 0], one[:, 1]) for one in members], axis=0))

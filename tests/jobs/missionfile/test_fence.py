@@ -24,11 +24,12 @@ from gcs_windplan.mission import Fence, FenceCircle, FencePolygon, Frame, fence_
 from gcs_windplan.planning.export import mission_of
 from gcs_windplan.planning.planner import plan_route
 from gcs_windplan.planning.request import FenceArea, Request, Site, Uniform
-from gcs_windplan.scene import Airspace, Prism
+from gcs_windplan.scene import Airspace, Prism, Scene
 from gcs_windplan.terrain import Dem
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind import Calm
 from tests.oracles.fences import breaches
+from tests.scenes import changed
 
 from .missions import FIELDS, complaints, mission
 
@@ -76,7 +77,7 @@ def test_areas_become_the_fence_only_where_they_are_marked(tmp_path: Path) -> No
     assert mast.places.tolist() == [[0.0, 0.0]]
     assert (field.name, field.radius, field.inclusion) == ("field", None, True)
     assert field.places.tolist() == [[-900, -900], [900, -900], [900, 900], [-900, 900]]
-    assert [len(request.airspace.keep_out), len(request.airspace.keep_in)] == [2, 1]
+    assert [len(request.scene.airspace.keep_out), len(request.scene.airspace.keep_in)] == [2, 1]
 
 
 def test_the_mission_carries_fence_return_point_and_rally_points(tmp_path: Path) -> None:
@@ -95,7 +96,7 @@ def test_the_mission_carries_fence_return_point_and_rally_points(tmp_path: Path)
     assert (circle.centre.latitude_deg, circle.centre.longitude_deg) == pytest.approx((47.001, 9.0015), abs=1e-9)
     (polygon,) = mission.fence.polygons
     assert (len(polygon.corners), polygon.inclusion) == (4, True)
-    assert request.frame.to_local(polygon.corners[2].latitude_deg, polygon.corners[2].longitude_deg)[0] == (
+    assert request.scene.frame.to_local(polygon.corners[2].latitude_deg, polygon.corners[2].longitude_deg)[0] == (
         pytest.approx([900, 900], abs=one_millimetre)
     )
     assert mission.fence.return_point is not None
@@ -197,9 +198,9 @@ def test_terrain_is_read_as_far_as_the_rally_points_lie(tmp_path: Path) -> None:
     rally = "[{latitude: 36.65, longitude: -84.1}]"  # 16 km east of the route
     path.write_text(mission(rally=rally))
     with_rally = read_request(path)
-    place = with_rally.frame.to_local(36.65, -84.1)
-    assert np.isfinite(with_rally.terrain.heights_at(place)).all()
-    assert with_rally.terrain.extent.misses(*place[0]) == 0
+    place = with_rally.scene.frame.to_local(36.65, -84.1)
+    assert np.isfinite(with_rally.scene.terrain.heights_at(place)).all()
+    assert with_rally.scene.terrain.extent.misses(*place[0]) == 0
     path.write_text(mission(rally="[{latitude: 36.65, longitude: -83.0}]"))
     with pytest.raises(RequestError, match=r"7:9: rally\.0: lies .* km outside of the terrain"):
         plan_route(read_request(path))
@@ -322,7 +323,7 @@ def test_routes_never_break_their_own_fence(masts: list[tuple[int, int, int]]) -
     square = [[-900, -900], [900, -900], [900, 900], [-900, 900]]
     field = area_of(AreaModel.model_validate({"name": "field", "polygon": {"east_north": square}, "fence": True}))
     request = flat_request(frame)
-    request = replace(
+    request = changed(
         request,
         airspace=Airspace(tuple(prism_of(a, frame, True) for a in areas), (prism_of(field, frame, False),)),
         fence=(*(fence_area_of(a, frame, True) for a in areas), fence_area_of(field, frame, False)),
@@ -341,9 +342,7 @@ def test_routes_never_break_their_own_fence(masts: list[tuple[int, int, int]]) -
 def flat_request(frame: LocalFrame) -> Request:
     return Request(
         name="flat",
-        frame=frame,
-        terrain=Dem.local(np.zeros((41, 41)), -1000.0, 1000.0, 50.0),
-        wind=Calm(),
+        scene=Scene(frame, Dem.local(np.zeros((41, 41)), -1000.0, 1000.0, 50.0), Calm()),
         vehicle=Vehicle(12.0),
         start=Site("start", -700.0, -700.0),
         goal=Site("goal", 700.0, 700.0),
