@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from gcs_windplan.scene import Clearance
 from gcs_windplan.terrain import Dem, Extent
 from gcs_windplan.wind.field import Steady
+
+
+@cache
+def waves(seed: int, strength: float, rising: float) -> list[tuple[int, float, np.ndarray, float]]:
+    """Three waves along each axis: the axis, their size, their wave number and phase."""
+    rng = np.random.default_rng(seed)
+    sizes = ((0, strength), (1, strength), (2, rising))
+    return [
+        (axis, size, rng.uniform(-0.01, 0.01, 2), rng.uniform(0, 2 * np.pi)) for axis, size in sizes for _ in range(3)
+    ]
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ import numpy as np
 
 from gcs_windplan.arrays import FloatArray, IntArray
 from gcs_windplan.flight.wind_limits import NO_LIMITS, WindLimits
+from gcs_windplan.kernels.panels import Panels, halves_of, knots_of, panels_of, parted, places_along, samples_of
 from gcs_windplan.kernels.triangle import PAPER, TRIANGLE, Performance, integrate_legs
 from gcs_windplan.vehicle import Vehicle
 from gcs_windplan.wind.each import at_each
@@ -32,8 +33,6 @@ _HOURS: Final = 12  # parts of a longer leg on each of which it does
 _TURNS: Final = 6  # of finding out how, and a change that needs no further one
 _SAME_FACE: Final = 1e-3
 _CALM: Final = 0.01  # of the airspeed: a change of wind over half a panel that needs no halving
-_SIMPSON: Final = np.array([1.0, 4.0, 1.0]) / 6.0
-_PLACES: Final = np.array([0.0, 0.5, 1.0])  # of its samples in a panel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,6 +133,7 @@ def sample_legs(
     limits: WindLimits = NO_LIMITS,
 ) -> SampledLegs:
     """The winds along straight legs (n, 3), looked at `finer` times as closely as their resolution asks for."""
+    starts = np.ascontiguousarray(starts, dtype=np.float64)
     vectors = np.ascontiguousarray(ends - starts, dtype=np.float64)
     lengths = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
     apart = 2 * min(limits.resolution_beside(wind, k) for k, wind in enumerate(winds)) / finer
@@ -146,7 +146,7 @@ def sample_legs(
     )
 
     def wind_at(leg: IntArray, share: FloatArray) -> FloatArray:
-        points = starts[leg] + share[:, None] * vectors[leg]
+        points = places_along(starts, vectors, leg, share)
         if known is None:
             return _with_shares(at_each(winds, points), limits, points, 0.0)
         gone = share if face is None else _gone(face[leg], share)
@@ -165,24 +165,10 @@ def sample_legs(
             if face is None or (before is not None and np.abs(face - before).max() < _SAME_FACE):
                 break
 
-    leg, begins, widths, sampled = _halved(*_first_panels(panels, wind_at), wind_at, _CALM * vehicle.airspeed)
-    first = np.zeros(len(vectors) + 1, dtype=np.int64)
-    np.cumsum(3 * np.bincount(leg, minlength=len(vectors)), out=first[1:])
-    width = 4 if limits else 3
-    blows = [
-        np.ascontiguousarray(sampled[:, :, width * member : width * (member + 1)]).reshape(-1, width)
-        for member in range(len(winds))
-    ]
-    return SampledLegs(
-        performance,
-        vectors,
-        first,
-        (widths[:, None] * _SIMPSON).ravel(),
-        (begins[:, None] + widths[:, None] * _PLACES).ravel(),
-        blows,
-        None if when is None else when[:, 0],
-        last,
-    )
+    panels_found = _halved(panels, wind_at, _CALM * vehicle.airspeed)
+    first, weights, shares, blows = samples_of(len(vectors), len(winds), *panels_found)
+    begins = None if when is None else when[:, 0]
+    return SampledLegs(performance, vectors, first, weights, shares, list(blows), begins, last)
 
 
 def _with_shares(winds: FloatArray, limits: WindLimits, points: FloatArray, seconds: float | FloatArray) -> FloatArray:
@@ -259,50 +245,19 @@ def still_air_times(points: FloatArray, vehicle: Vehicle, begin: float) -> Float
     return begin + np.append(0.0, np.cumsum(lengths / vehicle.airspeed))
 
 
-def _first_panels(
-    panels: IntArray, wind_at: Callable[[IntArray, FloatArray], FloatArray]
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Equal panels on each leg: their leg, begin and width as shares of it (k,), winds at both ends and in the middle
-    (k, 3, 3), or (k, 3, 3 m) for m members."""
-    knots = 2 * panels + 1
-    first = np.cumsum(knots) - knots
-    leg = np.repeat(np.arange(len(panels)), knots)
-    share = (np.arange(len(leg)) - first[leg]) / (2.0 * panels[leg])
-    winds = wind_at(leg, share)
-    of = np.repeat(np.arange(len(panels)), panels)
-    nth = np.arange(len(of)) - (np.cumsum(panels) - panels)[of]
-    knot = first[of] + 2 * nth
-    begins, widths = nth / panels[of], 1.0 / panels[of]
-    return of, begins, widths, np.stack([winds[knot], winds[knot + 1], winds[knot + 2]], axis=1)
-
-
-def _halved(
-    leg: IntArray,
-    begins: FloatArray,
-    widths: FloatArray,
-    winds: FloatArray,
-    wind_at: Callable[[IntArray, FloatArray], FloatArray],
-    calm: float,
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """The panels with those halved in which the wind changes by more than `calm` [m/s]; sorted by leg."""
-    done: list[tuple[IntArray, FloatArray, FloatArray, FloatArray]] = []
+def _halved(panels: IntArray, wind_at: Callable[[IntArray, FloatArray], FloatArray], calm: float) -> Panels:
+    """Equal `panels` (n,) of each leg, those halved in which the wind changes by more than `calm` [m/s]."""
+    rough = panels_of(panels, wind_at(*knots_of(panels)))
+    done: list[Panels] = []
     for _ in range(_HALVINGS):
-        rough = np.abs(np.diff(winds, axis=1)).max(axis=(1, 2)) > calm
-        if not rough.any():
+        kept, rough, leg, middles = parted(*rough, calm)
+        done.append(kept)
+        if not len(leg):
             break
-        done.append((leg[~rough], begins[~rough], widths[~rough], winds[~rough]))
-        leg, begins, widths, winds = leg[rough], begins[rough], widths[rough], winds[rough]
-        quarters = wind_at(np.tile(leg, 2), np.concatenate([begins + 0.25 * widths, begins + 0.75 * widths]))
-        before, after = quarters[: len(leg)], quarters[len(leg) :]
-        winds = np.concatenate(
-            [
-                np.stack([winds[:, 0], before, winds[:, 1]], axis=1),
-                np.stack([winds[:, 1], after, winds[:, 2]], axis=1),
-            ]
-        )
-        begins = np.concatenate([begins, begins + 0.5 * widths])
-        leg, widths = np.tile(leg, 2), np.tile(0.5 * widths, 2)
-    done.append((leg, begins, widths, winds))
+        rough = halves_of(*rough, wind_at(leg, middles))
+    else:
+        done.append(rough)
+    if len(done) == 1:
+        return done[0]
     leg, begins, widths, winds = (np.concatenate(parts) for parts in zip(*done, strict=True))
-    order = np.argsort(leg, kind="stable")
-    return leg[order], begins[order], widths[order], np.ascontiguousarray(winds[order])
+    return leg, begins, widths, winds

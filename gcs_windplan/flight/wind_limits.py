@@ -61,8 +61,10 @@ class WindLimits:
         members = winds.shape[1] // 3
         fields = [self.gusts_of(member) for member in range(members)]
         together = [one for some in fields for one in some]
-        blown = at_each(together, points, seconds) if together else np.empty((len(points), 0))
-        parts = np.split(blown, np.cumsum([3 * len(some) for some in fields])[:-1], axis=1)
+        if not together:
+            return np.column_stack([self._shares(winds[:, 3 * k : 3 * k + 3], None) for k in range(members)])
+        ends = np.cumsum([3 * len(some) for some in fields])
+        parts = np.split(at_each(together, points, seconds), ends[:-1], axis=1)
         return np.column_stack(
             [self._shares(winds[:, 3 * k : 3 * k + 3], parts[k] if fields[k] else None) for k in range(members)]
         )
@@ -84,4 +86,5 @@ NO_LIMITS: Final = WindLimits()
 
 def mean_strength(winds: FloatArray) -> FloatArray:
     """The mean level speed (n,) of the winds (n, 3 k) of k fields [m/s]."""
-    return np.asarray(np.hypot(winds[:, 0::3], winds[:, 1::3]).mean(axis=1))
+    strengths = np.hypot(winds[:, 0::3], winds[:, 1::3])
+    return strengths[:, 0] if strengths.shape[1] == 1 else np.asarray(strengths.mean(axis=1))

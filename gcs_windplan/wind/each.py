@@ -26,6 +26,8 @@ def at_each(winds: Sequence[WindField], points: FloatArray, seconds: float | Flo
     Raises `WindError` as their `at` does.
     """
     first = winds[0]
-    if len(winds) > 1 and isinstance(first, Sharing) and all(type(wind) is type(first) for wind in winds):
+    if len(winds) == 1:
+        return np.ascontiguousarray(first.at(points, seconds))
+    if isinstance(first, Sharing) and all(type(wind) is type(first) for wind in winds):
         return first.at_members(winds, points, seconds)
     return np.concatenate([wind.at(points, seconds) for wind in winds], axis=1)

@@ -91,7 +91,8 @@ def thin(points: FloatArray, cost: SectionCost, clearance: Clearance, limit: flo
     """
     legs, times = cost.priced(points)
     while len(points) > 2:
-        skip = cost.of_legs(points[:-2], points[2:], _spans(cost, times[:-2], times[2:]))
+        when = np.column_stack([times[:-2], times[2:]]) if cost.changing else None
+        skip = cost.of_legs(points[:-2], points[2:], when)
         skip[clearance.breaches(points[:-2], points[2:]) != 0] = np.inf
         extra = skip - legs[:-1] - legs[1:]
         least = int(np.argmin(extra))
@@ -148,9 +149,12 @@ def settle(
     return points, cost.of_polyline(points) if cost.changing else float(legs.sum())
 
 
-def _spans(cost: SectionCost, begins: FloatArray, ends: FloatArray) -> FloatArray | None:
-    """When legs begin and end (n, 2), where that matters."""
-    return np.column_stack([begins.ravel(), ends.ravel()]) if cost.changing else None
+def _spans(cost: SectionCost, times: FloatArray, moving: IntArray, tries: int) -> FloatArray | None:
+    """When the legs to the vertices `moving` and from them begin and end, each tried so often, where it matters."""
+    if not cost.changing:
+        return None
+    legs = np.concatenate([np.tile(moving - 1, tries), np.tile(moving, tries)])
+    return np.column_stack([times[legs], times[legs + 1]])
 
 
 def _try_around(
@@ -169,7 +173,8 @@ def _try_around(
     move changes them by seconds, in which no forecast changes.
     """
     before, after = points[moving - 1], points[moving + 1]
-    reach = 0.5 * (np.linalg.norm(points[moving] - before, axis=1) + np.linalg.norm(after - points[moving], axis=1))
+    lengths = np.sqrt(((points[1:] - points[:-1]) ** 2).sum(axis=1))
+    reach = 0.5 * (lengths[moving - 1] + lengths[moving])
     tried = points[moving] + size[:, None] * reach[:, None] * _pattern(sweep, len(moving))[:, None, :]
     shape = tried.shape[:2]
     places = tried.reshape(-1, 3)
@@ -179,11 +184,7 @@ def _try_around(
     price = np.full(len(starts), np.inf)
     clear = clearance.breaches(starts, ends) == 0
     clear = np.tile(clear[: len(places)] & clear[len(places) :], 2)
-    when = _spans(
-        cost,
-        np.concatenate([np.tile(times[moving - 1], shape[0]), np.tile(times[moving], shape[0])]),
-        np.concatenate([np.tile(times[moving], shape[0]), np.tile(times[moving + 1], shape[0])]),
-    )
+    when = _spans(cost, times, moving, shape[0])
     price[clear] = cost.of_legs(starts[clear], ends[clear], None if when is None else when[clear])
     first, second = price[: len(places)].reshape(shape), price[len(places) :].reshape(shape)
     choice = np.argmin(first + second, axis=0)
