@@ -21,29 +21,32 @@ def naive_table(grid):
     )
     table = RegularGridInterpolator(axes, grid.watts)
 
-    def watts(height: float, climb_rate: float, airspeed: float) -> float:
-        inside = [min(max(value, axis[0]), axis[-1]) for value, axis in zip((height, climb_rate), axes, strict=False)]
-        return float(table((*inside, min(airspeed, axes[2][-1]))))
+    def watts(height, climb_rate, airspeed):
+        inside = [np.clip(value, axis[0], axis[-1]) for value, axis in zip((height, climb_rate), axes, strict=False)]
+        return table(np.stack(np.broadcast_arrays(*inside, np.minimum(airspeed, axes[2][-1])), axis=-1))
 
     return watts
 
 
-def naive_price(vehicle, vector, height, wind, watts, cost_index=0.0) -> float:
-    """Energy and worth of time [J] of a leg in one wind: the air sees the velocity over ground less the wind."""
+def naive_flight(vehicle, vector, wind) -> tuple[float, float, float]:
+    """Seconds, climb rate and airspeed of a leg in one wind: the air sees the velocity over ground less the wind."""
     length = float(np.linalg.norm(vector))
     seconds = length * naive_slowness(vehicle, np.asarray(vector) / length, wind)
     if not math.isfinite(seconds):
-        return math.inf
+        return math.inf, 0.0, 0.0
     through_air = np.asarray(vector) / seconds - np.asarray(wind)
-    return seconds * (watts(height, float(through_air[2]), math.hypot(*through_air[:2])) + cost_index)
+    return seconds, float(through_air[2]), math.hypot(*through_air[:2])
 
 
-def naive_edge_price(vehicle, airspeeds, start, end, wind_a, wind_b, watts, cost_index=0.0) -> float:
-    """The trapezoidal rule over both winds, at the best of the airspeeds."""
-    vector = np.asarray(end) - np.asarray(start)
+def naive_edge_prices(vehicle, airspeeds, starts, ends, winds_a, winds_b, watts, cost_index=0.0) -> np.ndarray:
+    """The trapezoidal rule over the winds at both ends of edges (n,), each at the best of the airspeeds."""
     prices = []
     for airspeed in airspeeds:
         flown = replace(vehicle, airspeed=float(airspeed))
-        ends = ((start[2], wind_a), (end[2], wind_b))
-        prices.append(sum(naive_price(flown, vector, height, wind, watts, cost_index) for height, wind in ends) / 2)
-    return min(prices)
+        at_both = []
+        for places, winds in ((starts, winds_a), (ends, winds_b)):
+            flights = [naive_flight(flown, b - a, wind) for a, b, wind in zip(starts, ends, winds, strict=True)]
+            seconds, *air = np.array(flights).T
+            at_both.append(seconds * (watts(places[:, 2], *air) + cost_index))
+        prices.append(np.mean(at_both, axis=0))
+    return np.min(prices, axis=0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -24,18 +23,35 @@ AIRFRAMES = ["small_quadcopter", "large_multirotor", "fixed_wing"]
 def brute_force(points, wind, vehicle, power, between, cost_index=0.0, begin=0.0):
     """Each leg at every 5 cm/s, half of what is allowed, one leg after the other, the cheapest kept."""
     best, clock = [], begin
-    for start, end in pairwise(points):
-        leg, least = np.stack([start, end]), (math.inf, math.nan, clock)
-        for airspeed in np.arange(between[0], between[1] + 1e-9, 0.05):
-            flown = replace(vehicle, airspeed=float(airspeed))
-            times = fly_legs(leg, wind, flown, clock)[1]
-            if not np.isfinite(times[-1]):
-                continue
-            joules = leg_energies(leg, times, wind, flown, power)[0] + cost_index * (times[1] - times[0])
-            least = min(least, (joules, float(airspeed), float(times[-1])))
-        best.append(least)
-        clock = least[2]
+    airspeeds = np.arange(between[0], between[1] + 1e-9, 0.05)
+    for leg in pairwise(points):
+        scan = _at_once if len(wind.times) == 1 else _one_by_one
+        joules, times = scan(np.stack(leg), wind, vehicle, power, airspeeds, clock)
+        flown = np.isfinite(times)
+        price = np.where(flown, joules + cost_index * np.where(flown, times - clock, 0.0), np.inf)
+        k = int(np.argmin(price))
+        best.append((price[k], airspeeds[k], times[k]))
+        clock = times[k]
     return np.array(best)
+
+
+def _at_once(leg, wind, vehicle, power, airspeeds, begin):
+    """Energies and arrivals of a leg at all airspeeds: to and fro, as its way back tells nothing in a steady wind."""
+    points, speeds = np.tile(leg, (len(airspeeds), 1)), np.repeat(airspeeds, 2)[:-1]
+    seconds = fly_legs(points, wind, vehicle, begin, speeds)[0].seconds
+    times = np.append(0.0, np.cumsum(np.where(np.isfinite(seconds), seconds, 1.0)))
+    with np.errstate(invalid="ignore"):  # too slow for the wind
+        return leg_energies(points, times, wind, vehicle, power, speeds)[::2], begin + seconds[::2]
+
+
+def _one_by_one(leg, wind, vehicle, power, airspeeds, begin):
+    """The same in a wind that changes."""
+    found = []
+    for airspeed in airspeeds:
+        flown = replace(vehicle, airspeed=float(airspeed))
+        times = fly_legs(leg, wind, flown, begin)[1]
+        found.append((leg_energies(leg, times, wind, flown, power)[0] if np.isfinite(times[-1]) else np.inf, times[-1]))
+    return np.array(found).T
 
 
 def legs_of(seed: int, count: int = 5, climb: float = 10.0) -> np.ndarray:

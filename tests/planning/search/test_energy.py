@@ -23,7 +23,7 @@ from gcs_windplan.planning.veil import lay_grid, lay_prm
 from gcs_windplan.vehicle import FixedWing, Multirotor, RotaryWing, Vehicle, air_density
 from gcs_windplan.vehicle.power_grid import tabulate
 from gcs_windplan.wind import Calm
-from tests.oracles.powering import naive_edge_price, naive_table
+from tests.oracles.powering import naive_edge_prices, naive_table
 from tests.planning.search.test_bounds import scatter
 from tests.worlds import AREA, WavyWind, rough_dem, rules_over
 
@@ -37,22 +37,11 @@ MODELS = {"quadcopter": QUADCOPTER, "helicopter": HELICOPTER}
 
 def pair_energies(cost: SectionCost, points, winds, pairs):
     """Independent prices of directed edges."""
-    watts = naive_table(cost.power)
-    return np.array(
-        [
-            naive_edge_price(
-                cost.vehicle,
-                cost.power.airspeeds,
-                points[i],
-                points[j],
-                winds[i],
-                winds[j],
-                watts,
-                cost.power.cost_index,
-            )
-            for i, j in pairs
-        ]
-    )
+    starts, ends = pairs.T
+    return naive_edge_prices(
+        cost.vehicle, cost.power.airspeeds, points[starts], points[ends], winds[starts], winds[ends],
+        naive_table(cost.power), cost.power.cost_index,
+    )  # fmt: skip
 
 
 def dijkstra_cost(costs, pairs, size: int, start: int, goal: int) -> float:
@@ -94,10 +83,9 @@ def test_energy_on_a_grid_is_what_its_edges_add_up_to_and_no_bound_changes_it(se
     start, goal = windy.points[0], windy.points[veil.size - 1]
     found = find_path(windy, cost, start, goal)
     watts = naive_table(cost.power)
-    winds = wind.at(found.points)
-    edges = zip(found.points[:-1], found.points[1:], winds[:-1], winds[1:], strict=True)
-    added = sum(naive_edge_price(vehicle, cost.power.airspeeds, a, b, wa, wb, watts) for a, b, wa, wb in edges)
-    assert found.cost == pytest.approx(added, rel=rounding)
+    winds, way = wind.at(found.points), found.points
+    added = naive_edge_prices(vehicle, cost.power.airspeeds, way[:-1], way[1:], winds[:-1], winds[1:], watts)
+    assert found.cost == pytest.approx(added.sum(), rel=rounding)
     monkeypatch.setattr("gcs_windplan.planning.cost.section.least_prices", lambda points, *_: np.zeros(len(points)))
     blind = find_path(windy, cost, start, goal)
     assert found.cost == pytest.approx(blind.cost, rel=rounding)
@@ -147,7 +135,8 @@ def test_the_bound_is_close_in_uniform_wind():
     setting = cost.setting(points[1], winds)
     bound = least_prices(points, setting, cost.power, points[0])[0]
     watts = naive_table(cost.power)
-    true = naive_edge_price(Vehicle(10.0), cost.power.airspeeds, *points, *winds, watts)
+    start, end, *blows = (row[None] for row in (*points, *winds))
+    true = naive_edge_prices(Vehicle(10.0), cost.power.airspeeds, start, end, *blows, watts)[0]
     assert bound <= true
     assert bound == pytest.approx(true, rel=0.005)
 
