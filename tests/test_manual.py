@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 import shlex
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass, field
@@ -25,11 +23,11 @@ from tests.link.autopilots import ArduPilot
 from tests.link.udp import calling
 from tests.mavsdk_peers import free_port
 from tests.terrain.rasters import from_origin, write
+from tests.verbs import run
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = {path.name: path for path in (ROOT / "README.md", *sorted((ROOT / "gcs_windplan" / "manual").glob("*.md")))}
 FENCE = re.compile(r"^( *)(?:<!-- not run: (.+) -->\n *)?```(\w*)\n(.*?)\n *```$", re.MULTILINE | re.DOTALL)
-CODE = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
 NUMBER = re.compile(r"\d+:\d\d\b|\d+(?:\.\d+)?")
 ON_THIS_MACHINE = re.compile(r" +\d\.\d{3}$|[\d.]+ s\b|\b[\d.]+ times as \w+|on \d+ cores?|[█ ]+")
 TIGHT = {  # on another processor vertices settle a little elsewhere, and ties in A* by angle fall otherwise
@@ -81,10 +79,7 @@ class Desk:
         if command not in self.printed:
             program, *arguments = shlex.split(re.sub(r"udpin:[\d.:]+", f"udpin:127.0.0.1:{self.port}", command))
             assert program == "gcs-windplan"
-            done = subprocess.run(
-                [sys.executable, "-c", CODE, *arguments],
-                cwd=self.folder, capture_output=True, text=True, timeout=300, check=False,
-            )  # fmt: skip
+            done = run(*arguments, cwd=self.folder)
             assert "Traceback" not in done.stderr
             assert done.returncode in (0, 1) or "broken.yaml" in command, done.stderr
             self.printed[command] = [line.rstrip() for line in (done.stdout + done.stderr).splitlines()]
@@ -246,8 +241,6 @@ def test_help_on_a_terminal_is_set_out(monkeypatch, capsys):
 
 
 def test_an_unknown_topic_is_exit_code_2(tmp_path):
-    done = subprocess.run(
-        [sys.executable, "-c", CODE, "help", "revew"], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = run("help", "revew", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "error: 'revew' is no topic of the manual; did you mean 'review'?\n"

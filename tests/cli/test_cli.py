@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import yaml
 
+from tests.verbs import command, run
+
 GOOD = """\
 name: small
 vehicle: {airspeed: 12 m/s}
@@ -29,14 +31,6 @@ graph:
 """
 
 
-def run(*arguments, cwd: Path) -> subprocess.CompletedProcess[str]:
-    code = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
-    return subprocess.run(
-        [sys.executable, "-W", "error", "-c", code, *map(str, arguments)],
-        cwd=cwd, capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
-
-
 def mission(folder: Path, **changes) -> Path:
     """A mission file with some top-level fields replaced (None: removed)."""
     content = yaml.safe_load(GOOD)
@@ -51,7 +45,9 @@ def mission(folder: Path, **changes) -> Path:
 
 def test_plan_writes_everything(tmp_path):
     (tmp_path / "mission.yaml").write_text(GOOD)
-    done = run("plan", "mission.yaml", cwd=tmp_path)
+    done = subprocess.run(
+        command("plan", "mission.yaml"), cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     folder = tmp_path / "out" / "small"

@@ -24,20 +24,12 @@ from tests.link.autopilots import PX4, ArduPilot, Autopilot
 from tests.link.bench import survey
 from tests.link.udp import calling
 from tests.mavsdk_peers import free_port
+from tests.verbs import CODE, command, run
 
 from .test_cli import GOOD
 
 AT_ONCE = ("--sysid", 1, "--compid", 1)  # named, so that it need not listen for others
-CODE = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
 ONCE_IT_BEGINS = CODE.replace("main()", "print('begins', flush=True); main()")
-
-
-def command(*arguments) -> list[str]:
-    return [sys.executable, "-W", "error", "-c", CODE, *map(str, arguments)]
-
-
-def run(*arguments, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(command(*arguments), cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
 
 
 def udpin(port: int) -> str:

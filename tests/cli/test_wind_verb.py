@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 from gcs_windplan.cli import linking
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import WindplanError
+from tests.verbs import run
 from tests.wind.grib_files import box, message
 from tests.wind.other_readers import NAMES, Value, real, whole_winds
 from tests.wind.trap_file import write_trap
@@ -278,14 +279,6 @@ def test_errors_are_one_clear_line(options: tuple[str, ...], said: str, tmp_path
     assert said in refused(write_trap(tmp_path / "a.nc", hours=(0.0, 6.0)), *options)
 
 
-def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    code = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
-    return subprocess.run(
-        [sys.executable, "-W", "error", "-c", code, "wind", *map(str, arguments)],
-        cwd=cwd, capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -297,7 +290,7 @@ def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 )
 def test_exit_codes_of_errors(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
     write_trap(tmp_path / "a.nc")
-    done = run(*arguments, cwd=tmp_path)
+    done = run("wind", *arguments, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert said in done.stderr
     assert "Traceback" not in done.stderr
@@ -305,7 +298,7 @@ def test_exit_codes_of_errors(arguments: tuple[str, ...], said: str, tmp_path: P
 
 def test_exit_code_of_an_inventory_of_half_a_wind(tmp_path: Path) -> None:
     write_trap(tmp_path / "a.nc", without=("v",))
-    done = run("a.nc", cwd=tmp_path)
+    done = run("wind", "a.nc", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "stopped: it has u (u) but no v: download it along" in done.stdout
 
