@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from gcs_windplan.formats import write_plan
+from tests.link.bench import survey
 from tests.mavsdk_peers import free_port
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
@@ -43,7 +45,6 @@ def where(code):
         sys.setprofile(None)
         Finalised()
 """
-NOWHERE = ("push", "none.plan", "--to", "udpin:127.0.0.1:1")
 
 
 def ended(where: str, nth: int, number: int, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -72,7 +73,8 @@ def test_a_verb_that_is_ended_while_it_loads(where: str, nth: int, number: int):
 
 @pytest.mark.parametrize("nth", [1, 60])
 def test_a_push_that_is_ended_while_it_loads_says_that_it_does_not_know(nth: int, tmp_path: Path):
-    done = ended(
-        IN_A_CALLBACK_OF_THE_IMPORT_SYSTEM, nth, signal.SIGTERM, "push", "none.plan", "--to", "udpin:127.0.0.1:1"
-    )
+    """Nobody answers, so it cannot have come to an end of its own before the interruption that waits for an import."""
+    write_plan(survey(), path := tmp_path / "survey.plan")
+    push = ("push", str(path), "--to", f"udpin:127.0.0.1:{free_port()}", "--timeout", "60")
+    done = ended(IN_A_CALLBACK_OF_THE_IMPORT_SYSTEM, nth, signal.SIGTERM, *push)
     assert (done.returncode, done.stdout, done.stderr) == (4, "", "interrupted\n")
