@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.jobs.words import AutopilotName
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.diff import MissionDiff
@@ -24,7 +25,7 @@ EPILOG = "Exit codes: 0 the same; 1 different; 2 a file cannot be read."
 def diff(
     one: Annotated[Path, typer.Argument(metavar="A", help="A .plan or .waypoints.")],
     other: Annotated[Path, typer.Argument(metavar="B", help="Another.")],
-    autopilot: Annotated[Literal["ardupilot", "px4"] | None, typer.Option(help="Whose rules count.")] = None,
+    autopilot: Annotated[AutopilotName | None, typer.Option(help="Whose rules count.")] = None,
     as_json: linking.Json = False,
 ) -> None:
     """Read both, compare, report."""

@@ -32,6 +32,7 @@ from gcs_windplan.jobs.missionfile.values import (
     Share,
     Speed,
 )
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 from gcs_windplan.units import SPEED
 from gcs_windplan.vehicle import Airframe, Battery, FixedWing, Multirotor, PowerModel, PowerTable, RotaryWing, Vehicle
 
@@ -158,8 +159,8 @@ class AirframeModel(Section):
     """An airframe file."""
 
     name: Label = Field(description="of the airframe", examples=["small quadcopter"])
-    type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
-    autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="its firmware")
+    type: VehicleKind = Field(default="multicopter", description="kind of airframe")
+    autopilot: AutopilotName = Field(default="ardupilot", description="its firmware")
     mass: Mass = Field(description="all that flies: battery and payload too", examples=["4.2 kg"])
     battery: BatteryModel = Field(description="what it flies on", examples=["{capacity: 130 Wh}"])
     airspeed: Airspeed = Field(description="cruise speed through the air", examples=["12 m/s"])

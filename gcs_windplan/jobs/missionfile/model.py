@@ -28,6 +28,7 @@ from gcs_windplan.jobs.missionfile.values import (
     Weight,
 )
 from gcs_windplan.jobs.missionfile.world import ObstacleModel, SiteModel, TerrainModel, WindModel
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 
 
 class VehicleModel(Section):
@@ -36,8 +37,8 @@ class VehicleModel(Section):
     airframe: FileName | None = Field(
         default=None, description="a file with its speeds, mass, battery and power; relative to this file"
     )
-    type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
-    autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="firmware the mission is for")
+    type: VehicleKind = Field(default="multicopter", description="kind of airframe")
+    autopilot: AutopilotName = Field(default="ardupilot", description="firmware the mission is for")
     airspeed: AirspeedOrFree | None = Field(
         default=None,
         description="cruise speed through the air; needed without an `airframe`. `free`: each leg at its own, between"
