@@ -23,9 +23,10 @@ def clear(
     as_json: linking.Json = False,
 ) -> None:
     """Delete and report."""
-    from gcs_windplan.jobs.transfers import VehicleLink
     from gcs_windplan.jobs.transfers import clear as clear_vehicle
 
     with linking.answering("clear", as_json):
-        transfer = clear_vehicle(VehicleLink(on, sysid, compid, sign, timeout), kinds, verify=verify)
+        transfer = clear_vehicle(
+            on, kinds=kinds, system=sysid, component=compid, key_file=sign, timeout=timeout, verify=verify
+        )
     linking.report(transfer, "clear", as_json)

@@ -188,11 +188,31 @@ def pull(
     return Transfer(peer, tuple(parts), mission=mission, notes=notes.all)
 
 
-def clear(link: VehicleLink, kinds: Kinds = "mission", *, verify: bool = True) -> Transfer:
-    """Delete what a vehicle holds, type after type until one is not accepted, and look whether it is gone."""
+def clear(
+    on: str,
+    *,
+    kinds: Kinds = "mission",
+    system: int | None = None,
+    component: int | None = None,
+    key_file: Path | None = None,
+    timeout: float | None = None,
+    verify: bool = True,
+    cancel: CancelToken | None = None,
+) -> Transfer:
+    """Delete what a vehicle holds, type after type until one is not accepted, and look whether it is gone.
+
+    `on` and what follows it are as in `push`. ArduPilot keeps its home.
+
+    Raises `InputError` for what cannot be used, and `LinkError` where nobody is there.
+
+    >>> import gcs_windplan as gw
+    >>> gw.clear("udpin:14550", kinds="all")
+    Traceback (most recent call last):
+    gcs_windplan.errors.AddressError: the address 'udpin:14550' lacks host or port: ...
+    """
     wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
     parts: list[TransferPart] = []
-    with link.meet() as (session, peer):
+    with VehicleLink(on, system, component, key_file, timeout).meet(cancel) as (session, peer):
         for kind in wanted:
             parts.append(clear_items(session, peer, kind, verify=verify))
             if parts[-1].outcome.verdict != "accepted":
