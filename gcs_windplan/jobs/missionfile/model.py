@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import Field
 
 from gcs_windplan.jobs.missionfile.areas import FenceModel
 from gcs_windplan.jobs.missionfile.limits import LimitsModel
@@ -91,12 +90,11 @@ class CostModel(Section):
             yield SchemaProblem(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
+    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
+        """A name alone, too."""
         long = dict(schema)
         schema.clear()
         schema.update(anyOf=[long["properties"]["name"], long])
-        return schema
 
 
 class UniformModel(Section):
@@ -169,7 +167,7 @@ class MissionModel(Section):
     name: FileStem = Field(description="of the mission and of the files written", examples=["ridge-crossing"])
     vehicle: VehicleModel = Field(description="what flies", examples=["{airspeed: 12 m/s}"])
     terrain: TerrainModel = Field(
-        description="the ground; exactly one of dem, sample, mesh, surface", examples=["{dem: tile.tif}"]
+        description="the ground; exactly one of dem, sample, mesh, surface, flat", examples=["{dem: tile.tif}"]
     )
     obstacles: tuple[ObstacleModel, ...] = Field(default=(), description="closed meshes that stand on the terrain")
     wind: WindModel = Field(description="exactly one of calm, constant, paper, forecast", examples=["{calm: true}"])
