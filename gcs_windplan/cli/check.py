@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.cli.choices import option_name, print_json
 from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 
 if TYPE_CHECKING:
@@ -34,7 +35,6 @@ def check(
     as_json: linking.Json = False,
 ) -> None:
     """Read or plan, look, report."""
-    from gcs_windplan.cli.choices import option_name
     from gcs_windplan.jobs.check import check as check_mission
 
     with linking.answering("check", as_json):
@@ -75,6 +75,4 @@ def _print_json(file: Path, found: Check) -> None:
         "notes": list(found.notes),
         "exit_code": 1 if found.matters else 0,
     }
-    from gcs_windplan.json_text import json_text
-
-    typer.echo(json_text(document))
+    print_json(document)

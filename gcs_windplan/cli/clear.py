@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.jobs.words import Kinds
 
 HELP = "Delete a vehicle's mission, fence or rally points, and read back that nothing is left (but ArduPilot's home)."
 EPILOG = linking.EPILOG
@@ -14,7 +15,7 @@ EPILOG = linking.EPILOG
 
 def clear(
     on: Annotated[str, typer.Option("--on", metavar="ADDRESS", help="Where the vehicle is.")],
-    kinds: Annotated[Literal["mission", "fence", "rally", "all"], typer.Option("--type", help="What.")] = "mission",
+    kinds: Annotated[Kinds, typer.Option("--type", help="What.")] = "mission",
     sysid: linking.System = None,
     compid: linking.Component = None,
     sign: linking.KeyFile = None,

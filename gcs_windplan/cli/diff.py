@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.cli.choices import print_json
 from gcs_windplan.jobs.words import AutopilotName
 
 if TYPE_CHECKING:
@@ -43,9 +44,7 @@ def diff(
             for kind, comparison in found.parts.items()
         }
         document = {"verb": "diff", "same": found.same, "autopilot": found.autopilot, "parts": parts}
-        from gcs_windplan.json_text import json_text
-
-        typer.echo(json_text(document))
+        print_json(document)
     else:
         _print(found)
     if not found.same:

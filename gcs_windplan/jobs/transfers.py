@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Literal, TypeAlias
+from typing import Final, TypeAlias
 
 from gcs_windplan.errors import FormatError, InputError, LinkError, Problem, RefusedError
 from gcs_windplan.formats import ReadMission, check_writable, write_plan, write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.jobs.items import ItemsWords, file_of, items_of
-from gcs_windplan.jobs.words import Naming
+from gcs_windplan.jobs.words import Kinds, Naming
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items, with_fence, with_rally
 from gcs_windplan.link.home import Homes, counts_from_home
 from gcs_windplan.link.outcome import UNSUPPORTED, Verdict
@@ -24,8 +24,6 @@ from gcs_windplan.mission import Home, MissionItems, fence_items, rally_items
 from gcs_windplan.mission.firmware import MissionType
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
-#: What of a mission travels.
-Kinds: TypeAlias = Literal["mission", "fence", "rally", "all"]
 Note: TypeAlias = Callable[[str], None]
 
 _ALL: Final[tuple[MissionType, ...]] = ("mission", "fence", "rally")

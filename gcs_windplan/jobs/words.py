@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 else:
     AutopilotName = Literal[autopilots()]
 
+#: What of a mission travels.
+Kinds: TypeAlias = Literal["mission", "fence", "rally", "all"]
+
 #: How a face calls what it is asked: `max_gust` in Python, `--max-gust` on the command line.
 Naming: TypeAlias = Callable[[str], str]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
@@ -25,6 +25,7 @@ class PolygonModel(Section):
     """The corners of an area."""
 
     expects: ClassVar[str] = "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
+    alone: ClassVar[str] = "latitude_longitude"
 
     latitude_longitude: tuple[tuple[Latitude, Longitude], ...] | None = Field(
         default=None, min_length=3, description="at least 3 corners; a list alone is short for this"
@@ -47,13 +48,6 @@ class PolygonModel(Section):
         if not any(name in fields for name in names):
             yield SchemaProblem((), f"corners are missing; {cls.expects} belongs here")
         yield from at_most_one(fields, *names)
-
-    @classmethod
-    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
-        """A list alone, too."""
-        long = dict(schema)
-        schema.clear()
-        schema.update(anyOf=[long["properties"]["latitude_longitude"]["anyOf"][0], long])
 
 
 class CircleModel(PlaceModel):

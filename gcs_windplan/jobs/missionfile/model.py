@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -66,6 +66,7 @@ class CostModel(Section):
     """What the search adds up."""
 
     expects: ClassVar[str] = "distance, angle, hybrid, time or energy, or {name: hybrid, distance: 0.1, angle: 0.9},"
+    alone: ClassVar[str] = "name"
 
     name: Literal["distance", "angle", "hybrid", "time", "energy"] = Field(
         description="the cost; `cost: time` is short for `cost: {name: time}`. `energy` asks for an `airframe`",
@@ -88,13 +89,6 @@ class CostModel(Section):
                 yield SchemaProblem((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
         elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
             yield SchemaProblem(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
-
-    @classmethod
-    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
-        """A name alone, too."""
-        long = dict(schema)
-        schema.clear()
-        schema.update(anyOf=[long["properties"]["name"], long])
 
 
 class UniformModel(Section):

@@ -44,16 +44,13 @@ class Section(BaseModel):
 
     expects: ClassVar[str] = ""
     words: ClassVar[tuple[str, ...]] = ()  # examples of the text that may stand in its place
+    alone: ClassVar[str] = ""  # the field whose value may stand in its place
     elsewhere: ClassVar[Mapping[str, str]] = {}  # fields that are looked for here, and where they stand, in words
 
     @classmethod
     def expanded(cls, data: object) -> object:
         """What the short form of a section stands for. Raises `ValueError` for words that say nothing."""
         return data
-
-    @classmethod
-    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
-        """Add to the JSON schema what pydantic does not know."""
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -81,9 +78,11 @@ class Section(BaseModel):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler(core)
-        cls.complete_json_schema(handler.resolve_ref_schema(schema))
-        return {"anyOf": [{"type": "string", "examples": list(cls.words)}, schema]} if cls.words else schema
+        long = handler(core)
+        if cls.alone:
+            field = long["properties"][cls.alone]
+            return {"anyOf": [field.get("anyOf", [field])[0], long]}
+        return {"anyOf": [{"type": "string", "examples": list(cls.words)}, long]} if cls.words else long
 
 
 def spelled_out(section: type[Section], fields: Fields) -> Fields:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Final, Literal
+from typing import ClassVar, Final, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -14,7 +14,7 @@ from gcs_windplan.jobs.missionfile.values import (
     Calm,
     Direction,
     Exponent,
-    FileName,
+    FileNames,
     Height,
     Label,
     Latitude,
@@ -137,9 +137,8 @@ class TerrainModel(Section):
     model_config = one_of("dem", "sample", "mesh", "surface", "flat")
     words: ClassVar[tuple[str, ...]] = ("dem.tif", "sample:jacksboro", "flat:120 m")
 
-    dem: tuple[FileName, ...] | None = Field(
+    dem: FileNames | None = Field(
         default=None,
-        min_length=1,
         description="a file or a list of files with heights: GeoTIFF, .hgt, .hgt.zip; relative to this file",
     )
     sample: Literal["jacksboro"] | None = Field(
@@ -159,12 +158,8 @@ class TerrainModel(Section):
 
     @classmethod
     def expanded(cls, data: object) -> object:
-        """A text says files, the sample or a plain; a single file is a list of one."""
-        if isinstance(data, str):
-            return terrain_fields(data)
-        if isinstance(data, dict) and "dem" in data and not isinstance(data["dem"], list | tuple | None):
-            return {**data, "dem": [data["dem"]]}
-        return data
+        """A text says a file, the sample or a plain."""
+        return terrain_fields(data) if isinstance(data, str) else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -175,12 +170,6 @@ class TerrainModel(Section):
         if shape and "origin" not in fields:
             example = "origin: {latitude: 38.1, longitude: 23.7}"
             yield SchemaProblem(("origin",), f"is missing; a {shape} needs it, for example '{example}'")
-
-    @classmethod
-    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
-        """A single file, too."""
-        several = schema["properties"]["dem"]["anyOf"]
-        several.insert(0, several[0]["items"])
 
 
 class ObstacleModel(Section):
@@ -278,9 +267,8 @@ class WindModel(Section):
     calm: Calm | None = Field(default=None, description="still air")
     constant: ConstantWindModel | None = Field(default=None, description="the same wind everywhere")
     paper: PaperWindModel | None = Field(default=None, description="an analytic field")
-    forecast: tuple[FileName, ...] | None = Field(
+    forecast: FileNames | None = Field(
         default=None,
-        min_length=1,
         description="a file or a list of files with a forecast or reanalysis: GRIB, NetCDF, Open-Meteo's JSON; relative"
         " to this file",
     )
@@ -298,12 +286,8 @@ class WindModel(Section):
 
     @classmethod
     def expanded(cls, data: object) -> object:
-        """A text says still air, a steady wind or a file; a single file is a list of one."""
-        if isinstance(data, str):
-            return wind_fields(data)
-        if isinstance(data, dict) and "forecast" in data and not isinstance(data["forecast"], list | tuple | None):
-            return {**data, "forecast": [data["forecast"]]}
-        return data
+        """A text says still air, a steady wind or a file."""
+        return wind_fields(data) if isinstance(data, str) else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -317,9 +301,3 @@ class WindModel(Section):
             yield SchemaProblem(("members",), "names no member; write `all`, or a list of their numbers")
         if isinstance(members, list | tuple) and len(set(map(str, members))) < len(members):
             yield SchemaProblem(("members",), "names a member twice")
-
-    @classmethod
-    def complete_json_schema(cls, schema: dict[str, Any]) -> None:
-        """A single file, too."""
-        several = schema["properties"]["forecast"]["anyOf"]
-        several.insert(0, several[0]["items"])
