@@ -1,4 +1,7 @@
-"""The firmwares that there are: one file each beside this one, with a `FIRMWARES` that lists its kinds of vehicles."""
+"""The firmwares that there are: one file each beside this one, named as its autopilot.
+
+Its `FIRMWARES` list the kinds of vehicles, and what all have in common.
+"""
 
 from __future__ import annotations
 
