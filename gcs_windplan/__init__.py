@@ -21,6 +21,7 @@ A vehicle
 
     push            a mission, read back and compared            Transfer
     pull            what a vehicle holds                         Transfer
+    clear           delete that, and look whether it is gone     Transfer
 
 Values: a mission's Place (GeoPoint, or LocalPoint in a LocalFrame), Area, ObstacleFile, Limits, CostChoice,
 WindProfile, Uniform or Roadmap, Export; of what flies it Home and MissionItem. Long work tells its Progress and stops

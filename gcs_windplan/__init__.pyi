@@ -36,6 +36,7 @@ from .jobs.plans import departures as departures
 from .jobs.plans import plan as plan
 from .jobs.review import review as review
 from .jobs.transfers import Transfer as Transfer
+from .jobs.transfers import clear as clear
 from .jobs.transfers import pull as pull
 from .jobs.transfers import push as push
 from .jobs.winds import WindProfile as WindProfile

@@ -62,7 +62,7 @@ def test_every_public_name_has_an_example_that_runs(name, tmp_path, monkeypatch)
 
 
 def test_options_are_keyword_only():
-    for name in ("plan", "review", "check", "push", "pull", "diff", "read_forecast"):
+    for name in ("plan", "review", "check", "push", "pull", "clear", "diff", "read_forecast"):
         kinds = [one.kind for one in inspect.signature(getattr(gw, name)).parameters.values()]
         assert sum(kind is inspect.Parameter.POSITIONAL_OR_KEYWORD for kind in kinds) <= 2, name
 

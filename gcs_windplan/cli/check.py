@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.cli.choices import option_name, print_json
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.check import Check
@@ -28,14 +30,11 @@ _EFFECTS = "rejected, dropped, rounded, changed or ignored"
 
 def check(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A .plan, a .waypoints, or a mission file.")],
-    autopilot: Annotated[Literal["ardupilot", "px4"] | None, typer.Option(help="Whose rules count.")] = None,
-    vehicle_type: Annotated[
-        Literal["multicopter", "fixed-wing"] | None, typer.Option(help="The kind of vehicle whose rules count.")
-    ] = None,
+    autopilot: Annotated[AutopilotName | None, typer.Option(help="Whose rules count.")] = None,
+    vehicle_type: Annotated[VehicleKind | None, typer.Option(help="The kind of vehicle whose rules count.")] = None,
     as_json: linking.Json = False,
 ) -> None:
     """Read or plan, look, report."""
-    from gcs_windplan.cli.choices import option_name
     from gcs_windplan.jobs.check import check as check_mission
 
     with linking.answering("check", as_json):
@@ -76,6 +75,4 @@ def _print_json(file: Path, found: Check) -> None:
         "notes": list(found.notes),
         "exit_code": 1 if found.matters else 0,
     }
-    from gcs_windplan.json_text import json_text
-
-    typer.echo(json_text(document))
+    print_json(document)

@@ -53,6 +53,13 @@ def asked_mission(file: Path, airspeed: str | None) -> Mission:
         return replace(mission, airspeed=airspeed)
 
 
+def print_json(document: object) -> None:
+    """Print a document for scripts."""
+    from gcs_windplan.json_text import json_text
+
+    typer.echo(json_text(document))
+
+
 def output_folder(folder: Path | None, name: str) -> Path:
     """The folder to write into, made if need be."""
     from gcs_windplan.jobs.outputs import file_stem, make_folder

@@ -41,17 +41,11 @@ def departures(
     """Plan at each departure and print a table."""
     import time
 
-    from gcs_windplan.jobs.mission import as_moment
-    from gcs_windplan.jobs.moments import moments_of
-    from gcs_windplan.jobs.plans import as_request
-    from gcs_windplan.jobs.winds import DAY
+    from gcs_windplan.jobs.plans import departures_request
     from gcs_windplan.planning.departures import sweep
-    from gcs_windplan.progress import UNTRACKED
 
     asked = asked_mission(mission, airspeed)
-    moments = moments_of(first, last, every, as_moment(asked.departure), _OPTIONS.__getitem__)
-    _refuse_odd(len(moments))
-    request = as_request(asked, UNTRACKED, moments[0], (moments[-1] - moments[0]).total_seconds() + DAY)
+    request, moments = departures_request(asked, first, last, every, most=_MOST, named=_OPTIONS.__getitem__)
     since = time.monotonic()
     found = list(_shown(sweep(request, moments, cores=cores), len(moments), not json_output))
     took = time.monotonic() - since
@@ -65,14 +59,6 @@ def departures(
     print_departures(request, found, took, cores)
     if not any(one.feasible for one in found):
         raise typer.Exit(1)
-
-
-def _refuse_odd(count: int) -> None:
-    """Raise for more departures than anyone reads."""
-    from gcs_windplan.errors import InputError, Problem
-
-    if count > _MOST:
-        raise InputError(Problem(f"makes {count} departures; at most {_MOST}: a longer step", "--every"))
 
 
 def _shown(found: Iterator[Departure], count: int, visible: bool) -> Iterator[Departure]:

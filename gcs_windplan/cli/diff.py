@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.cli.choices import print_json
+from gcs_windplan.jobs.words import AutopilotName
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.diff import MissionDiff
@@ -24,7 +26,7 @@ EPILOG = "Exit codes: 0 the same; 1 different; 2 a file cannot be read."
 def diff(
     one: Annotated[Path, typer.Argument(metavar="A", help="A .plan or .waypoints.")],
     other: Annotated[Path, typer.Argument(metavar="B", help="Another.")],
-    autopilot: Annotated[Literal["ardupilot", "px4"] | None, typer.Option(help="Whose rules count.")] = None,
+    autopilot: Annotated[AutopilotName | None, typer.Option(help="Whose rules count.")] = None,
     as_json: linking.Json = False,
 ) -> None:
     """Read both, compare, report."""
@@ -42,9 +44,7 @@ def diff(
             for kind, comparison in found.parts.items()
         }
         document = {"verb": "diff", "same": found.same, "autopilot": found.autopilot, "parts": parts}
-        from gcs_windplan.json_text import json_text
-
-        typer.echo(json_text(document))
+        print_json(document)
     else:
         _print(found)
     if not found.same:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
+from gcs_windplan.cli.choices import print_json
 from gcs_windplan.errors import InputError, LinkError, NoRouteError, RefusedError, WindplanError
 
 if TYPE_CHECKING:
@@ -70,9 +71,7 @@ def answering(verb: str, as_json: bool) -> Iterator[None]:
             code = code_of(error)
             verdict = next((verdict for verdict, number in EXIT_CODES.items() if number == code), "error")
             document = {"verb": verb, "outcome": verdict, "exit_code": code, "error": "; ".join(told(error))}
-            from gcs_windplan.json_text import json_text
-
-            typer.echo(json_text(document))
+            print_json(document)
         raise
 
 
@@ -111,9 +110,7 @@ def report(transfer: Transfer, verb: str, as_json: bool, more: dict[str, Any] | 
             f"{part.mission_type}: {part.outcome.message}" for part in parts if part.outcome.verdict != "accepted"
         ]
         failed = {"error": "; ".join(errors)} if errors else {}
-        from gcs_windplan.json_text import json_text
-
-        typer.echo(json_text({**document, **failed, "parts": described, **(more or {})}))
+        print_json({**document, **failed, "parts": described, **(more or {})})
     for part in parts:
         if verb == "pull" and part.outcome.verdict == "accepted":
             note(f"{part.mission_type} was read: {part.outcome.message}")

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from gcs_windplan.cli.choices import Airspeed, Folder, MissionFile, asked_mission, output_folder
-
-if TYPE_CHECKING:
-    from gcs_windplan.planning.request import Request
 
 HELP = "Plan a route; write .waypoints, .plan, summary.json, map.png and profile.png; print its legs."
 
@@ -35,7 +32,7 @@ def plan(
 
     from gcs_windplan.cli.tables import print_legs
     from gcs_windplan.jobs.mission import as_cost
-    from gcs_windplan.jobs.outputs import file_stem, plan_files, write_files
+    from gcs_windplan.jobs.outputs import file_notes, plan_files, write_files
     from gcs_windplan.jobs.plans import plan as plan_mission
 
     if cost is not None and cost != as_cost(asked.cost).name:
@@ -43,29 +40,16 @@ def plan(
     if speed_changes is not None:
         asked = replace(asked, export=replace(asked.export, speed_changes=speed_changes))
     planned = plan_mission(asked, keep_reserve=not force)
-    request = planned.request
     files = plan_files(planned)
-    folder = output_folder(output, request.name)
+    folder = output_folder(output, asked.name)
     written = write_files(files, folder)
     print_legs(planned)
     report(written)
-    beside = [name for name, there in (("fence", request.fence), ("rally points", request.rally)) if there]
-    if request.export.waypoints and beside:
-        stem = file_stem(request.name)
-        typer.echo(f"note: {stem}.waypoints has no place for {' and '.join(beside)}: upload {stem}.plan")
-    for path in stale(folder, request, files):
-        typer.echo(f"note: {path} is of an earlier plan; this one does not write it")
+    for note in file_notes(planned.request, files, folder):
+        typer.echo(f"note: {note}")
 
 
 def report(paths: list[Path]) -> None:
     """Say what was written."""
     for path in paths:
         typer.echo(f"wrote {path}")
-
-
-def stale(folder: Path, request: Request, files: dict[str, str | bytes]) -> list[Path]:
-    """Mission files of an earlier plan in the same folder, which somebody might upload in place of this one's."""
-    from gcs_windplan.jobs.outputs import file_stem
-
-    names = (f"{file_stem(request.name)}.waypoints", f"{file_stem(request.name)}.plan")
-    return [folder / name for name in names if name not in files and (folder / name).exists()]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.cli.choices import print_json
+from gcs_windplan.jobs.words import Kinds
 
 if TYPE_CHECKING:
     from gcs_windplan.jobs.transfers import Transfer
@@ -24,9 +26,7 @@ EPILOG = linking.EPILOG
 def pull(
     source: Annotated[str, typer.Option("--from", metavar="ADDRESS", help="Where the vehicle is.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="The .plan or .waypoints to write.")],
-    kinds: Annotated[
-        Literal["mission", "fence", "rally", "all"] | None, typer.Option("--type", help="Read this alone, or all.")
-    ] = None,
+    kinds: Annotated[Kinds | None, typer.Option("--type", help="Read this alone, or all.")] = None,
     sysid: linking.System = None,
     compid: linking.Component = None,
     sign: linking.KeyFile = None,
@@ -62,9 +62,7 @@ def _report(transfer: Transfer, mission: MissionItems, output: Path, as_json: bo
     if as_json:
         vehicle = linking.described_peer(peer)
         document = {"verb": "pull", "vehicle": vehicle, "outcome": "accepted", "exit_code": 0, "file": str(output)}
-        from gcs_windplan.json_text import json_text
-
-        typer.echo(json_text({**document, "items": counts}))
+        print_json({**document, "items": counts})
         return
     held = ", ".join(f"{kind} {counts[kind]}" for kind in ("mission", "fence", "rally") if kind in counts)
     typer.echo(f"read from {peer}: items of {held}")

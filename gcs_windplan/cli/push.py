@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated
 
 import typer
 
 from gcs_windplan.cli import linking
+from gcs_windplan.jobs.words import Kinds
 
 HELP = """Push a mission to a vehicle, read it back and compare.
 
@@ -18,20 +19,16 @@ any; what the vehicle has of kinds that the file lacks stays. Ctrl-C cancels the
 """
 EPILOG = linking.EPILOG
 
-Kinds: TypeAlias = Annotated[
-    Literal["mission", "fence", "rally", "all"] | None,
-    typer.Option(
-        "--type",
-        help="Send this alone; with all, the vehicle shall hold exactly what the file holds, so that a fence and "
-        "rally points that the file lacks are deleted.",
-    ),
-]
+_TYPE_HELP = (
+    "Send this alone; with all, the vehicle shall hold exactly what the file holds, so that a fence and rally points"
+    " that the file lacks are deleted."
+)
 
 
 def push(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A .plan, a .waypoints, or a mission file.")],
     to: Annotated[str, typer.Option("--to", metavar="ADDRESS", help="Where the vehicle is.")],
-    kinds: Kinds = None,
+    kinds: Annotated[Kinds | None, typer.Option("--type", help=_TYPE_HELP)] = None,
     sysid: linking.System = None,
     compid: linking.Component = None,
     sign: linking.KeyFile = None,

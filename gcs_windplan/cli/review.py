@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from gcs_windplan.cli.linking import Json, answering
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment
@@ -44,10 +45,8 @@ def review(
     vehicle: Annotated[
         Path | None, typer.Option(metavar="FILE", help="An airframe file; without one energy is not known.")
     ] = None,
-    autopilot: Annotated[Literal["ardupilot", "px4"] | None, typer.Option(help="In place of the mission's.")] = None,
-    vehicle_type: Annotated[
-        Literal["multicopter", "fixed-wing"] | None, typer.Option(help="In place of the mission's.")
-    ] = None,
+    autopilot: Annotated[AutopilotName | None, typer.Option(help="In place of the mission's.")] = None,
+    vehicle_type: Annotated[VehicleKind | None, typer.Option(help="In place of the mission's.")] = None,
     home: Annotated[
         str | None, typer.Option(metavar="LAT,LON[,ALT]", help="In place of the mission's; without ALT on the ground.")
     ] = None,

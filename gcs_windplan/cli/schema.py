@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from gcs_windplan.cli.choices import print_json
+
 HELP = "Print every field of the mission file with its unit, default and meaning."
 EPILOG = None
 
@@ -17,8 +19,6 @@ def schema(
     from gcs_windplan.jobs.missionfile.reference import json_schema, schema_reference
 
     if json:
-        from gcs_windplan.json_text import json_text
-
-        typer.echo(json_text(json_schema()))
+        print_json(json_schema())
     else:
         typer.echo(schema_reference())

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from gcs_windplan.flight import clock
+from gcs_windplan.mission.firmware import firmware_of
 
 if TYPE_CHECKING:
     from gcs_windplan.planning.planner import PlannedRoute
@@ -70,9 +71,11 @@ def flown_line(plan: PlannedRoute) -> str | None:
 
     if not plan.request.export.speed_changes or (flown := flown_duration(plan)) is None:
         return None
-    who = "PX4 may fly" if plan.request.vehicle.autopilot == "px4" else "ArduCopter flies"
+    vehicle = plan.request.vehicle
+    firmware = firmware_of(vehicle.autopilot, vehicle.type)
+    sure = "flies" if firmware.motion_measured else "may fly"
     return (
-        f"as {who} it, corners and acceleration counted: {clock(flown.en_route)} min en route,"
+        f"as {firmware.name} {sure} it, corners and acceleration counted: {clock(flown.en_route)} min en route,"
         f" {clock(flown.total)} min in all"
     )
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from gcs_windplan.mission.firmware import autopilots
+
 if TYPE_CHECKING:
     from gcs_windplan.link.transport import Transport
     from gcs_windplan.standin.vehicle import StandInOptions
@@ -35,7 +37,9 @@ def vehicle(
     ] = "udpin:127.0.0.1:14550",
     autopilot: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="ardupilot or px4: whose rules it keeps; default the mission file's."),
+        typer.Option(
+            metavar="NAME", help=f"{' or '.join(autopilots())}: whose rules it keeps; default the mission file's."
+        ),
     ] = None,
     mission: Annotated[
         Path | None,

@@ -26,6 +26,7 @@ from gcs_windplan.formats.document import Node, parse_document
 from gcs_windplan.formats.geofence import fence_object, rally_object, read_fence, read_rally
 from gcs_windplan.formats.reading import ReadMission, Repairs, home_or_none, read_text, without_mark
 from gcs_windplan.formats.writing import write_atomically
+from gcs_windplan.link.peer import VEHICLE_TYPES, VTOL_TYPES
 from gcs_windplan.mission import (
     Command,
     Frame,
@@ -44,8 +45,6 @@ _VEHICLES: dict[VehicleType, int] = {
     "multicopter": mavlink.MAV_TYPE_QUADROTOR,
     "fixed-wing": mavlink.MAV_TYPE_FIXED_WING,
 }
-_ROTORS = "QUADROTOR COAXIAL HELICOPTER TRICOPTER HEXAROTOR OCTOROTOR DECAROTOR DODECAROTOR"
-_MULTICOPTERS = frozenset(getattr(mavlink, f"MAV_TYPE_{name}") for name in _ROTORS.split())
 # QGroundControl's AltMode; 0 is mixed
 _ALTITUDE_MODES: dict[int, int] = {Frame.GLOBAL_RELATIVE_ALT: 1, Frame.GLOBAL: 2, Frame.GLOBAL_TERRAIN_ALT: 4}
 
@@ -260,12 +259,10 @@ def _autopilot(node: Node, repairs: Repairs) -> Autopilot | None:
 
 def _vehicle_type(node: Node, repairs: Repairs) -> VehicleType | None:
     number = node.whole() if node.present else 0
-    if number in _MULTICOPTERS:
-        return "multicopter"
-    if number == mavlink.MAV_TYPE_FIXED_WING:
-        return "fixed-wing"
-    repairs.add(f"vehicleType {number} is neither a multicopter nor fixed-wing; the vehicle is unknown")
-    return None
+    kind = None if number in VTOL_TYPES else VEHICLE_TYPES.get(number)
+    if kind is None:
+        repairs.add(f"vehicleType {number} is neither a multicopter nor fixed-wing; the vehicle is unknown")
+    return kind
 
 
 def _speed(node: Node, repairs: Repairs) -> float | None:

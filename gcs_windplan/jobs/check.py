@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.jobs.items import ItemsWords, file_of, items_of
 from gcs_windplan.jobs.words import Naming
-from gcs_windplan.mission.firmware import Firmware, firmware_of
+from gcs_windplan.mission.firmware import Firmware, autopilots, firmware_of
 from gcs_windplan.mission.lint import EFFECTS, FINER_THAN_FLOWN, Effect, FirmwareFinding, lint
 from gcs_windplan.progress import CancelToken, ProgressCallback
 from gcs_windplan.vehicle import Autopilot, VehicleType
@@ -70,7 +70,8 @@ def check(
     pilot = autopilot or items.autopilot
     if pilot is None:
         option = named("autopilot")
-        text = f"does not say for which autopilot it is: give {option} ardupilot or {option} px4"
+        options = " or ".join(f"{option} {name}" for name in autopilots())
+        text = f"does not say for which autopilot it is: give {options}"
         raise InputError(Problem(text, file=file))
     if items.autopilot not in (None, pilot):
         notes.append(f"the file is for {items.autopilot}, and {named('autopilot')} {pilot} asks for other rules")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -12,6 +12,7 @@ from gcs_windplan.formats import write_atomically
 if TYPE_CHECKING:
     from gcs_windplan.assessment import Assessment
     from gcs_windplan.planning.planner import PlannedRoute
+    from gcs_windplan.planning.request import Request
 
 Files: TypeAlias = "dict[str, str | bytes]"
 
@@ -41,6 +42,17 @@ def plan_files(planned: PlannedRoute) -> Files:
     files["map.png"] = draw_map([planned])
     files["profile.png"] = draw_profile(planned)
     return files
+
+
+def file_notes(request: Request, files: Files, folder: Path) -> Iterator[str]:
+    """What must be known of a plan's files: what does not fit, and mission files of an earlier plan in the folder."""
+    stem = file_stem(request.name)
+    beside = [name for name, there in (("fence", request.fence), ("rally points", request.rally)) if there]
+    if request.export.waypoints and beside:
+        yield f"{stem}.waypoints has no place for {' and '.join(beside)}: upload {stem}.plan"
+    for name in (f"{stem}.waypoints", f"{stem}.plan"):
+        if name not in files and (folder / name).exists():
+            yield f"{folder / name} is of an earlier plan; this one does not write it"
 
 
 def review_files(assessments: Sequence[Assessment], page: str, also: Sequence[str] = ()) -> Files:

@@ -10,10 +10,12 @@ from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from gcs_windplan.errors import InputError, Problem
 from gcs_windplan.jobs.mission import Mission, as_cost, as_moment
 from gcs_windplan.jobs.missionfile import read_mission
 from gcs_windplan.jobs.requests import request_of
 from gcs_windplan.jobs.winds import DAY
+from gcs_windplan.jobs.words import Naming
 from gcs_windplan.planning import planner
 from gcs_windplan.planning.cost import COSTS, CostChoice
 from gcs_windplan.planning.request import Request
@@ -163,17 +165,34 @@ def departures(
     >>> [round(one.seconds) for one in found]
     [176, 176, 176]
     """
-    from gcs_windplan.jobs.moments import moments_of
     from gcs_windplan.planning.departures import sweep
 
-    tracker = Tracker(progress, cancel)
+    request, moments = departures_request(mission, first, last, every, tracker=Tracker(progress, cancel))
+    return list(sweep(request, moments, cores=cores, progress=progress, cancel=cancel))
+
+
+def departures_request(
+    mission: MissionWords,
+    first: datetime | str,
+    last: datetime | str,
+    every: timedelta | str,
+    *,
+    most: int | None = None,
+    named: Naming = str,
+    tracker: Tracker = UNTRACKED,
+) -> tuple[Request, list[datetime]]:
+    """The request at the first of so many departures, and all of them; raises `InputError` for more than `most`."""
+    from gcs_windplan.jobs.moments import moments_of
+
     if not isinstance(mission, Mission | Request):
         mission = read_mission(mission)
     own = mission.scene.departure if isinstance(mission, Request) else as_moment(mission.departure)
-    moments = moments_of(first, last, every, own)
+    moments = moments_of(first, last, every, own, named)
+    if most is not None and len(moments) > most:
+        text = f"makes {len(moments)} departures; at most {most}: a longer step"
+        raise InputError(Problem(text, named("every")))
     lasting = (moments[-1] - moments[0]).total_seconds() + DAY
-    request = as_request(mission, tracker, moments[0], lasting)
-    return list(sweep(request, moments, cores=cores, progress=progress, cancel=cancel))
+    return as_request(mission, tracker, moments[0], lasting), moments
 
 
 def as_request(

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Literal, TypeAlias
+from typing import Final, TypeAlias
 
 from gcs_windplan.errors import FormatError, InputError, LinkError, Problem, RefusedError
 from gcs_windplan.formats import ReadMission, check_writable, write_plan, write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
 from gcs_windplan.jobs.items import ItemsWords, file_of, items_of
-from gcs_windplan.jobs.words import Naming
+from gcs_windplan.jobs.words import Kinds, Naming
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items, with_fence, with_rally
 from gcs_windplan.link.home import Homes, counts_from_home
 from gcs_windplan.link.outcome import UNSUPPORTED, Verdict
@@ -24,8 +24,6 @@ from gcs_windplan.mission import Home, MissionItems, fence_items, rally_items
 from gcs_windplan.mission.firmware import MissionType
 from gcs_windplan.progress import CancelToken, Progress, ProgressCallback
 
-#: What of a mission travels.
-Kinds: TypeAlias = Literal["mission", "fence", "rally", "all"]
 Note: TypeAlias = Callable[[str], None]
 
 _ALL: Final[tuple[MissionType, ...]] = ("mission", "fence", "rally")
@@ -188,11 +186,31 @@ def pull(
     return Transfer(peer, tuple(parts), mission=mission, notes=notes.all)
 
 
-def clear(link: VehicleLink, kinds: Kinds = "mission", *, verify: bool = True) -> Transfer:
-    """Delete what a vehicle holds, type after type until one is not accepted, and look whether it is gone."""
+def clear(
+    on: str,
+    *,
+    kinds: Kinds = "mission",
+    system: int | None = None,
+    component: int | None = None,
+    key_file: Path | None = None,
+    timeout: float | None = None,
+    verify: bool = True,
+    cancel: CancelToken | None = None,
+) -> Transfer:
+    """Delete what a vehicle holds, type after type until one is not accepted, and look whether it is gone.
+
+    `on` and what follows it are as in `push`. ArduPilot keeps its home.
+
+    Raises `InputError` for what cannot be used, and `LinkError` where nobody is there.
+
+    >>> import gcs_windplan as gw
+    >>> gw.clear("udpin:14550", kinds="all")
+    Traceback (most recent call last):
+    gcs_windplan.errors.AddressError: the address 'udpin:14550' lacks host or port: ...
+    """
     wanted = tuple(kind for kind in _ALL if kinds in (kind, "all"))
     parts: list[TransferPart] = []
-    with link.meet() as (session, peer):
+    with VehicleLink(on, system, component, key_file, timeout).meet(cancel) as (session, peer):
         for kind in wanted:
             parts.append(clear_items(session, peer, kind, verify=verify))
             if parts[-1].outcome.verdict != "accepted":

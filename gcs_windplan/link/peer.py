@@ -13,10 +13,10 @@ from gcs_windplan.mission.firmware import Firmware, known_firmware
 from gcs_windplan.vehicle import Autopilot, VehicleType
 
 _ROTORS = "QUADROTOR COAXIAL HELICOPTER TRICOPTER HEXAROTOR OCTOROTOR DECAROTOR DODECAROTOR"
-_VTOL = range(19, 26)  # MAV_TYPE_VTOL_*, whose names change from version to version
+VTOL_TYPES = range(19, 26)  # MAV_TYPE_VTOL_*, whose names change from version to version
 VEHICLE_TYPES: dict[int, VehicleType] = {
     mavlink.MAV_TYPE_FIXED_WING: "fixed-wing",
-    **dict.fromkeys(_VTOL, "fixed-wing"),  # they run the firmware of planes
+    **dict.fromkeys(VTOL_TYPES, "fixed-wing"),  # they run the firmware of planes
     **{getattr(mavlink, f"MAV_TYPE_{name}"): "multicopter" for name in _ROTORS.split()},
 }
 _STARTING = (mavlink.MAV_STATE_UNINIT, mavlink.MAV_STATE_BOOT)

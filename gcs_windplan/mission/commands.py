@@ -51,6 +51,10 @@ class Command(IntEnum):
     NAV_RALLY_POINT = mavlink.MAV_CMD_NAV_RALLY_POINT
 
 
+TAKEOFFS = frozenset((Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF))
+LANDINGS = frozenset((Command.NAV_LAND, Command.NAV_VTOL_LAND))
+
+
 class Frame(IntEnum):
     """What an item's place and altitude refer to (MAV_FRAME without its prefix)."""
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import LocalFrame
-from gcs_windplan.mission.commands import Command, Frame, command_name, plain_frame
+from gcs_windplan.mission.commands import LANDINGS, TAKEOFFS, Command, Frame, command_name, plain_frame
 from gcs_windplan.mission.firmware import Firmware, flying_firmware
 from gcs_windplan.mission.items import Home, MissionItem
 from gcs_windplan.mission.jumps import stored_items, unrolled
@@ -28,8 +28,6 @@ MoveKind: TypeAlias = Literal["take-off", "leg", "landing", "return"]
 
 _APART = 0.01  # [m] places nearer than this are one
 _FULL_CIRCLE = 2 * math.pi
-_LANDINGS = (Command.NAV_LAND, Command.NAV_VTOL_LAND)
-_TAKEOFFS = (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF)
 _PASSED = (Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT)
 #: Items that a waypoint before them is passed for; for all others it comes to rest (ArduCopter, mode_auto.cpp).
 _LEGS = (*_PASSED, Command.NAV_LOITER_TIME, Command.NAV_LOITER_UNLIM)
@@ -153,12 +151,12 @@ class _Walk:
     def take(self, number: int, item: MissionItem) -> None:
         """Do what an item means."""
         command = item.command
-        if self.down and self._is_flown(item) and command not in (*_TAKEOFFS, Command.NAV_DELAY):
+        if self.down and self._is_flown(item) and command not in (*TAKEOFFS, Command.NAV_DELAY):
             self.remark(f"item {number}, {command_name(command)}, stands behind a landing and is unreachable")
             self.over = True
-        elif command in _TAKEOFFS:
+        elif command in TAKEOFFS:
             self._take_off(number, item)
-        elif command in _LANDINGS:
+        elif command in LANDINGS:
             self._land(number, item)
         elif command == Command.NAV_RETURN_TO_LAUNCH:
             self._return(number)
@@ -175,7 +173,7 @@ class _Walk:
     def jump_forever(self, number: int, target: int) -> None:
         """A jump back that is always taken; from the ground it leads on to a take-off only."""
         begun = next((item for item in self.mission.items[target - 1 :] if self._is_flown(item)), None)
-        if not self.down or (begun is not None and begun.command in _TAKEOFFS):
+        if not self.down or (begun is not None and begun.command in TAKEOFFS):
             self.endless = number
 
     def _move(self, move: Move) -> None:

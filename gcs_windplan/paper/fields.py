@@ -23,7 +23,26 @@ _SAMPLES_PER_UNIT = 20  # of the paper's plane: the figures there show 4 units, 
 
 
 @dataclass(frozen=True, slots=True)
-class Jet(Steady):
+class _OnPlane(Steady):
+    """A field on the paper's plane."""
+
+    speed: float = 1.0
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.speed):
+            raise WindError(f"the field's speed {self.speed} m/s is not finite")
+        if not (math.isfinite(self.scale) and self.scale > 0):
+            raise WindError(f"the field's scale {self.scale} m is not above 0")
+
+    @property
+    def resolution(self) -> float:
+        """A twentieth of the plane's unit [m]; no spacing resolves a jet's border or the origin's turn."""
+        return self.scale / _SAMPLES_PER_UNIT
+
+
+@dataclass(frozen=True, slots=True)
+class Jet(_OnPlane):
     """The paper's case 1, equation (14): an eastward wind between y = -1 and y = 1.
 
     As printed, (1 - y²) / sqrt((1 - y²)²) is 1 wherever |y| < 1, while the text speaks of varied magnitude.
@@ -36,12 +55,10 @@ class Jet(Steady):
     At |y| = 1 the printed formula is 0/0 and the air is still.
     """
 
-    speed: float = 1.0
-    scale: float = 1.0
     reading: JetReading = "unit"
 
     def __post_init__(self) -> None:
-        _check(self.speed, self.scale)
+        _OnPlane.__post_init__(self)
         if self.reading not in get_args(JetReading):
             raise WindError(f"the jet can be read as {', '.join(get_args(JetReading))}, not as {self.reading!r}")
 
@@ -49,11 +66,6 @@ class Jet(Steady):
     def name(self) -> str:
         """What the wind is, for people."""
         return f"jet between ±{self.scale:g} m north, read as {self.reading}, {self.speed:g} m/s (paper, 14)"
-
-    @property
-    def resolution(self) -> float:
-        """A twentieth of the plane's unit [m]; no spacing resolves the jump at the jet's border."""
-        return self.scale / _SAMPLES_PER_UNIT
 
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
@@ -68,28 +80,17 @@ class Jet(Steady):
 
 
 @dataclass(frozen=True, slots=True)
-class Diverging(Steady):
+class Diverging(_OnPlane):
     """The paper's case 2, equation (15): the unit vector along (x - 2, x + 1).
 
     Both components depend on x alone, as printed: left of x = -1 it blows to the south-west, between to the
     north-west, right of x = 2 to the north-east. They never vanish together, so there is no singular point.
     """
 
-    speed: float = 1.0
-    scale: float = 1.0
-
-    def __post_init__(self) -> None:
-        _check(self.speed, self.scale)
-
     @property
     def name(self) -> str:
         """What the wind is, for people."""
         return f"diverging field, {self.speed:g} m/s, {self.scale:g} m a unit (paper, 15)"
-
-    @property
-    def resolution(self) -> float:
-        """A twentieth of the plane's unit [m]."""
-        return self.scale / _SAMPLES_PER_UNIT
 
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
@@ -98,38 +99,20 @@ class Diverging(Steady):
 
 
 @dataclass(frozen=True, slots=True)
-class Rotation(Steady):
+class Rotation(_OnPlane):
     """The paper's case 3, equation (16): the unit vector along (-y, x), anticlockwise about the local origin.
 
     The origin itself is singular; the air is still there.
     """
-
-    speed: float = 1.0
-    scale: float = 1.0
-
-    def __post_init__(self) -> None:
-        _check(self.speed, self.scale)
 
     @property
     def name(self) -> str:
         """What the wind is, for people."""
         return f"rotation about the origin, {self.speed:g} m/s (paper, 16)"
 
-    @property
-    def resolution(self) -> float:
-        """A twentieth of the plane's unit [m]; no spacing resolves the turn at the origin."""
-        return self.scale / _SAMPLES_PER_UNIT
-
     def at(self, points: FloatArray, seconds: float | FloatArray = 0.0) -> FloatArray:
         """The wind (n, 3) [m/s] at points (n, 3)."""
         return _unit_field(-points[:, 1], points[:, 0], self.speed)
-
-
-def _check(speed: float, scale: float) -> None:
-    if not math.isfinite(speed):
-        raise WindError(f"the field's speed {speed} m/s is not finite")
-    if not (math.isfinite(scale) and scale > 0):
-        raise WindError(f"the field's scale {scale} m is not above 0")
 
 
 def _field(east: FloatArray, north: FloatArray) -> FloatArray:

@@ -17,10 +17,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
 from gcs_windplan.link.peer import sender as sender_of
-from gcs_windplan.link.wire import MISSION_TYPES
 from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.standin.items import FENCE, MISSION, RALLY, Refusal, StoredItem, item_message, read_item
-from gcs_windplan.standin.rules import Pilot, ServerOptions, acknowledge, result_name, text, type_name
+from gcs_windplan.standin.rules import Pilot, ServerOptions, Storekeeper, acknowledge, result_name, text, type_name
 from gcs_windplan.standin.storage import fence_fault, store
 
 _FLY_THERE, _CHANGE_ALTITUDE = 2, 3  # an item's `current`
@@ -41,20 +40,12 @@ class _Upload:
     gathered: list[StoredItem]
 
 
-class ArduPilotMissions:
+class ArduPilotMissions(Storekeeper):
     """See `MissionServer`. Mission, fence and rally points are separate here: one can arrive while another does."""
 
     def __init__(self, firmware: Firmware, pilot: Pilot, options: ServerOptions, now: float) -> None:
-        self.arrived: set[int] = set()
-        self.notes: list[str] = []
-        self._firmware = firmware
-        self._pilot = pilot
-        self._options = options
+        super().__init__(firmware, pilot, options)
         self._booted = now
-        self._capacity = {MISSION_TYPES[kind]: most for kind, most in firmware.capacity.items()}
-        if options.capacity is not None:
-            self._capacity[MISSION] = options.capacity
-        self._held: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
         self._uploads: dict[int, _Upload] = {}
         self._answers: dict[str, Callable[[Message, Ident, float], list[Message]]] = {
             "MISSION_COUNT": self._count,

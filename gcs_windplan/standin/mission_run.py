@@ -13,6 +13,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from gcs_windplan.mission import Command, Frame, Home, command_name, plain_frame
+from gcs_windplan.mission.commands import LANDINGS, TAKEOFFS
 from gcs_windplan.standin.items import StoredItem
 from gcs_windplan.standin.motion import Segment, StraightSegment, Wait
 from gcs_windplan.standin.pace import LegPace, Vector, exit_speed
@@ -24,9 +25,7 @@ _FORESIGHT = 6  # legs that are looked at for the speed at the end of one
 _APART = 0.01  # [m] places nearer than this are one
 _PASSED = (Command.NAV_WAYPOINT, Command.NAV_SPLINE_WAYPOINT)
 _LEGS = (*_PASSED, Command.NAV_LOITER_UNLIM, Command.NAV_LOITER_TIME)
-_TAKEOFFS = (Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF)
-_LANDINGS = (Command.NAV_LAND, Command.NAV_VTOL_LAND)
-_NO_LIFT_NEEDED = (*_TAKEOFFS, *_LANDINGS, Command.NAV_RETURN_TO_LAUNCH, Command.NAV_DELAY)
+_NO_LIFT_NEEDED = (*TAKEOFFS, *LANDINGS, Command.NAV_RETURN_TO_LAUNCH, Command.NAV_DELAY)
 _LOOKED_AT = 16  # AP_Mission.cpp, starts_with_takeoff_cmd: items looked at for a take-off
 
 
@@ -74,7 +73,7 @@ class MissionRun:
         looked_at = items[self._first : _LOOKED_AT]
         flown = (one for one in looked_at if one.command in firmware.navigation and one.command != Command.NAV_DELAY)
         first = next(flown, None)
-        if self._state.landed and (first is None or first.command not in _TAKEOFFS):
+        if self._state.landed and (first is None or first.command not in TAKEOFFS):
             return "Missing Takeoff Cmd"
         frames = {plain_frame(item.frame) for item in items if item.has_place}
         if Frame.GLOBAL_TERRAIN_ALT in frames and self._state.world.terrain is None:
@@ -116,7 +115,7 @@ class MissionRun:
         """Whether the item after the present one takes off again."""
         items = self._items()
         step = next(self._sequence.ahead(items, self.current + 1), None)
-        return step is not None and step.seq is not None and items[step.seq].command in _TAKEOFFS
+        return step is not None and step.seq is not None and items[step.seq].command in TAKEOFFS
 
     def wait(self, seconds: float) -> bool:
         """Let time pass on the present leg; whether something was done that changes its pace."""
@@ -147,7 +146,7 @@ class MissionRun:
             return []
         state, command, first = self._state, item.command, item.params[0] if item.params[0] > 0 else 0.0
         end = state.target(item)
-        if command in _TAKEOFFS:
+        if command in TAKEOFFS:
             return self._taking_off(item, end)
         if state.landed and command not in _NO_LIFT_NEEDED:  # PX4; ArduPilot refused it before
             lift = state.manoeuvres.take_off(max(end[2], state.body.altitude), state.lift_off)
@@ -170,7 +169,7 @@ class MissionRun:
         level = (end[0], end[1], state.body.altitude)
         if item.command == Command.NAV_LOITER_TO_ALT:
             return [self._leg(level), *make.change_height(level, end[2])]
-        if item.command in _LANDINGS:
+        if item.command in LANDINGS:
             return [] if state.landed else [self._leg(level), *make.land(level, self._touched)]
         if item.command == Command.NAV_RETURN_TO_LAUNCH:
             return [] if state.landed else make.return_to(state.home_place, self._touched)

@@ -15,29 +15,20 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
 from gcs_windplan.link.peer import sender as sender_of
-from gcs_windplan.link.wire import MISSION_TYPES
 from gcs_windplan.mission.firmware import Firmware
-from gcs_windplan.standin.items import FENCE, MISSION, RALLY, Refusal, StoredItem, item_message, plain, read_item
-from gcs_windplan.standin.rules import Pilot, ServerOptions, acknowledge, result_name, text, type_name
+from gcs_windplan.standin.items import MISSION, Refusal, StoredItem, item_message, plain, read_item
+from gcs_windplan.standin.rules import Pilot, ServerOptions, Storekeeper, acknowledge, result_name, text, type_name
 from gcs_windplan.standin.storage import infeasible, store
 
 _ALL_TYPES = 255
 _COMPONENTS = (0, mavlink.MAV_COMP_ID_MISSIONPLANNER)  # answered besides its own
 
 
-class Px4Missions:
+class Px4Missions(Storekeeper):
     """See `MissionServer`."""
 
     def __init__(self, firmware: Firmware, pilot: Pilot, options: ServerOptions, now: float) -> None:
-        self.arrived: set[int] = set()
-        self.notes: list[str] = []
-        self._firmware = firmware
-        self._pilot = pilot
-        self._options = options
-        self._capacity = {MISSION_TYPES[kind]: most for kind, most in firmware.capacity.items()}
-        if options.capacity is not None:
-            self._capacity[MISSION] = options.capacity
-        self._held: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
+        super().__init__(firmware, pilot, options)
         self._state: Literal["idle", "taking", "giving"] = "idle"
         self._partner = Ident(0, 0)
         self._type = MISSION

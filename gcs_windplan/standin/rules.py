@@ -10,7 +10,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.link.codec import Message
 from gcs_windplan.link.peer import Ident
-from gcs_windplan.standin.items import TYPE_NAMES, StoredItem
+from gcs_windplan.link.wire import MISSION_TYPES
+from gcs_windplan.mission.firmware import Firmware
+from gcs_windplan.standin.items import FENCE, MISSION, RALLY, TYPE_NAMES, StoredItem
 
 #: The messages that a mission server answers.
 MISSION_MESSAGES = frozenset(
@@ -113,6 +115,21 @@ class ServerOptions:
     component: int = mavlink.MAV_COMP_ID_AUTOPILOT1
     capacity: int | None = None
     mavlink1: bool = False
+
+
+class Storekeeper:
+    """What every server holds, and room for how much of it; see `MissionServer`."""
+
+    def __init__(self, firmware: Firmware, pilot: Pilot, options: ServerOptions) -> None:
+        self.arrived: set[int] = set()
+        self.notes: list[str] = []
+        self._firmware = firmware
+        self._pilot = pilot
+        self._options = options
+        self._capacity = {MISSION_TYPES[kind]: most for kind, most in firmware.capacity.items()}
+        if options.capacity is not None:
+            self._capacity[MISSION] = options.capacity
+        self._held: dict[int, list[StoredItem]] = {MISSION: [], FENCE: [], RALLY: []}
 
 
 def acknowledge(to: Ident, code: int, mission_type: int) -> Message:

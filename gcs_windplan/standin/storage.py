@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.mission import Frame, command_name, frame_name, is_global, plain_frame
+from gcs_windplan.mission.commands import TAKEOFFS, Frame, command_name, frame_name, is_global, plain_frame
 from gcs_windplan.mission.firmware import CommandRule, Firmware, stores
 from gcs_windplan.mission.firmware.storage import FLOAT
 from gcs_windplan.standin.items import FENCE, MISSION, TYPE_NAMES, Refusal, StoredItem
@@ -19,7 +19,6 @@ _POLYGONS = (
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
 )
 _CIRCLES = (mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION)
-_TAKEOFFS = (mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF)
 _INT_FRAMES = {
     Frame.GLOBAL: Frame.GLOBAL_INT,
     Frame.GLOBAL_RELATIVE_ALT: Frame.GLOBAL_RELATIVE_ALT_INT,
@@ -66,7 +65,7 @@ def infeasible(items: Sequence[StoredItem], firmware: Firmware) -> str | None:
     if firmware.feasibility is None:
         return None
     positions = [item.command for item in items if item.command in firmware.feasibility.positions]
-    if any(command in _TAKEOFFS for command in positions[1:]):
+    if any(command in TAKEOFFS for command in positions[1:]):
         return "takeoff is not the first waypoint item"
     for seq, item in enumerate(items):
         if item.has_place and not math.isfinite(item.z):

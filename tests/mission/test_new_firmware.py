@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sys
+from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from gcs_windplan.errors import InputError
 from gcs_windplan.flight.duration import duration_of
+from gcs_windplan.formats import write_waypoints
 from gcs_windplan.geo.frame import GeoPoint
+from gcs_windplan.jobs.words import VehicleKind
 from gcs_windplan.link.comparison import compare_items
 from gcs_windplan.link.firmware import incoming_mission, outgoing_items
 from gcs_windplan.link.peer import Ident, Peer
 from gcs_windplan.link.wire import item_to_message, message_to_item
 from gcs_windplan.mission import Command, Home, MissionItem, MissionItems
-from gcs_windplan.mission.firmware import autopilot_of, firmware_of
+from gcs_windplan.mission.firmware import autopilot_of, autopilots, firmware_of
 from gcs_windplan.mission.firmware.registry import all_firmwares
 from gcs_windplan.mission.lint import lint
 from gcs_windplan.standin.items import MISSION, Refusal, read_item
 from gcs_windplan.standin.rules import Parked
 from gcs_windplan.standin.servers import mission_server
 from gcs_windplan.standin.storage import store
+from gcs_windplan.vehicle import VehicleType
 
 from ..standin import speaking as say
 
@@ -139,3 +145,67 @@ def test_missions_are_flown_at_its_pace(toyfly):
     items = (at(Command.NAV_TAKEOFF, 0), at(Command.NAV_WAYPOINT, 400))
     slow = duration_of(MissionItems(items, HOME, "toyfly", "multicopter")).en_route
     assert slow > 2 * duration_of(MissionItems(items, HOME, "px4", "multicopter")).en_route
+
+
+SESSION = """
+import importlib, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[2])
+importlib.import_module("gcs_windplan.mission.firmware").__path__.append(sys.argv[1])
+from typer.testing import CliRunner
+from gcs_windplan.cli.app import app
+print("numpy" in sys.modules)
+from gcs_windplan.jobs.missionfile.airframe import read_airframe
+from gcs_windplan.jobs.missionfile.reference import json_schema
+print(json_schema()["$defs"]["VehicleModel"]["properties"]["autopilot"]["enum"])
+print(read_airframe(Path(sys.argv[1]) / "toy.yaml").vehicle.autopilot)
+for words in sys.argv[3:]:
+    done = CliRunner().invoke(app, words.split())
+    print(done.exit_code, *(done.output or str(done.exception)).split())
+"""
+TOY_MISSION = """
+name: toy
+vehicle: {airspeed: 5, autopilot: toyfly}
+terrain: {sample: jacksboro}
+wind: {calm: true}
+start: {latitude: 36.6, longitude: -84.2}
+goal: {latitude: 36.601, longitude: -84.2}
+"""
+
+
+def test_mission_files_and_options_take_its_name(tmp_path, gallery):
+    """In a process of its own, which finds the file beside the others when it starts."""
+    (tmp_path / "toyfly.py").write_text(FILE)
+    (tmp_path / "toy.yaml").write_text(
+        (gallery / "vehicles" / "small_quadcopter.yaml").read_text() + "\nautopilot: toyfly\n"
+    )
+    write_waypoints(MissionItems((at(Command.NAV_LAND, 0),), HOME), tmp_path / "m.waypoints")
+    (tmp_path / "m.yaml").write_text(TOY_MISSION)
+    (tmp_path / "typo.yaml").write_text(TOY_MISSION.replace("toyfly", "tofly"))
+    verbs = [
+        "check --help",
+        f"check {tmp_path}/m.waypoints --autopilot toyfly",
+        f"check {tmp_path}/m.waypoints --autopilot tofly",
+        f"check {tmp_path}/m.yaml",
+        f"plan {tmp_path}/typo.yaml",
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", SESSION, str(tmp_path), str(Path(__file__).parents[2]), *verbs],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    heavy, schema, airframe, helped, taken, refused, planned, mistyped = done.stdout.splitlines()
+    assert heavy == "False", "listing the firmwares loads none of them"
+    assert schema == "['ardupilot', 'px4', 'toyfly']"
+    assert airframe == "toyfly"
+    assert "ardupilot|px4|toyfly" in helped
+    assert "rejected item 1: ToyFly takes no NAV_LAND" in taken
+    assert "'tofly' is not one of 'ardupilot', 'px4', 'toyfly'" in refused
+    assert "m.yaml for ToyFly multicopter:" in planned
+    assert "write ardupilot, px4 or toyfly, not 'tofly'; did you mean toyfly?" in mistyped
+
+
+def test_the_kinds_of_vehicles_that_may_be_written_are_those_that_fly():
+    assert get_args(VehicleKind) == get_args(VehicleType)
+    assert {one.vehicle_type for one in all_firmwares()} - {None} == set(get_args(VehicleKind))
+    assert tuple(dict.fromkeys(one.autopilot for one in all_firmwares())) == autopilots()

@@ -8,11 +8,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from gcs_windplan.errors import InputError, MissionFileError, Problem
-from gcs_windplan.jobs.missionfile.marks import MarkedError, Marks, Values
-from gcs_windplan.jobs.missionfile.parsing import _order, _schema_problems, _yaml_problems, marks_of
+from gcs_windplan.jobs.missionfile.checking import check_text, read_text
+from gcs_windplan.jobs.missionfile.marks import Marks
 from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section
 from gcs_windplan.jobs.missionfile.values import (
     AIRSPEED,
@@ -32,9 +32,11 @@ from gcs_windplan.jobs.missionfile.values import (
     Share,
     Speed,
 )
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 from gcs_windplan.units import SPEED
 from gcs_windplan.vehicle import Airframe, Battery, FixedWing, Multirotor, PowerModel, PowerTable, RotaryWing, Vehicle
 
+_KIND: Final = "airframe file"
 _LARGEST_FILE: Final = 1_000_000  # bytes
 _MEASURED: Final = Measure(SPEED, at_least=0)
 
@@ -158,8 +160,8 @@ class AirframeModel(Section):
     """An airframe file."""
 
     name: Label = Field(description="of the airframe", examples=["small quadcopter"])
-    type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
-    autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="its firmware")
+    type: VehicleKind = Field(default="multicopter", description="kind of airframe")
+    autopilot: AutopilotName = Field(default="ardupilot", description="its firmware")
     mass: Mass = Field(description="all that flies: battery and payload too", examples=["4.2 kg"])
     battery: BatteryModel = Field(description="what it flies on", examples=["{capacity: 130 Wh}"])
     airspeed: Airspeed = Field(description="cruise speed through the air", examples=["12 m/s"])
@@ -192,17 +194,7 @@ def read_airframe(path: Path | str) -> Airframe:
     'fixed-wing'
     """
     file = Path(path)
-    try:
-        if file.stat().st_size > _LARGEST_FILE:
-            raise ValueError(f"larger than {_LARGEST_FILE // 1_000_000} MB; this is not an airframe file")
-        text = file.read_bytes().decode("utf-8-sig")
-    except FileNotFoundError:
-        raise _whole_file(file, "there is no such file; check the name and the folder") from None
-    except UnicodeDecodeError as error:
-        raise _whole_file(file, f"is not UTF-8 text (byte {error.start + 1}); save it as UTF-8") from None
-    except (OSError, ValueError) as error:
-        raise _whole_file(file, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    return parse_airframe(text, file)
+    return parse_airframe(read_text(file, _KIND, _LARGEST_FILE), file)
 
 
 def parse_airframe(text: str, file: Path) -> Airframe:
@@ -210,22 +202,7 @@ def parse_airframe(text: str, file: Path) -> Airframe:
 
     Raises `MissionFileError` with every problem, in the order of the lines.
     """
-    marks = marks_of(text, file, "airframe file")
-    try:
-        values = Values(marks)
-    except MarkedError as error:
-        raise MissionFileError(Problem(error.message, None, file, error.line, error.column)) from None
-    if not isinstance(values.value, dict):
-        message = "an airframe file holds fields such as 'name: small quadcopter'; this one holds something else"
-        raise MissionFileError(Problem(message, None, file, *marks.place(())))
-    problems = list(_yaml_problems(values, file))
-    broken = {problem.field for problem in problems}
-    try:
-        model = AirframeModel.model_validate(values.value)
-    except ValidationError as error:
-        problems += [found for found in _schema_problems(error, marks, file) if found.field not in broken]
-    if problems:
-        raise MissionFileError(sorted(dict.fromkeys(problems), key=_order))
+    model, marks = check_text(AirframeModel, text, file, _KIND, "name: small quadcopter")
     try:
         return _airframe(model)
     except InputError as error:  # numbers that are right one by one
@@ -295,7 +272,3 @@ def _measured_airspeeds(power: Fields) -> list[float | None]:
     if not isinstance(rows, list):
         return []
     return [_MEASURED.read_or_none(row.get("airspeed")) if isinstance(row, dict) else None for row in rows]
-
-
-def _whole_file(file: Path, message: str) -> MissionFileError:
-    return MissionFileError(Problem(message, None, file))

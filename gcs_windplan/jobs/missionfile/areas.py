@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from pydantic import Field, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import Field
 
 from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section, at_most_one, exactly_one
 from gcs_windplan.jobs.missionfile.values import (
@@ -26,6 +25,7 @@ class PolygonModel(Section):
     """The corners of an area."""
 
     expects: ClassVar[str] = "a list of corners [[latitude, longitude], ...] or {east_north: [[east, north], ...]}"
+    alone: ClassVar[str] = "latitude_longitude"
 
     latitude_longitude: tuple[tuple[Latitude, Longitude], ...] | None = Field(
         default=None, min_length=3, description="at least 3 corners; a list alone is short for this"
@@ -49,21 +49,19 @@ class PolygonModel(Section):
             yield SchemaProblem((), f"corners are missing; {cls.expects} belongs here")
         yield from at_most_one(fields, *names)
 
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
-        long = dict(schema)
-        schema.clear()
-        schema.update(anyOf=[long["properties"]["latitude_longitude"]["anyOf"][0], long])
-        return schema
-
 
 class CircleModel(PlaceModel):
     """A circle: its centre and its radius."""
 
     expects: ClassVar[str] = "a circle such as {latitude: 38.1, longitude: 23.7, radius: 300 m}"
+    words: ClassVar[tuple[str, ...]] = ()
 
     radius: PositiveLength = Field(description="of the circle", examples=["300 m"])
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """It has no short form: words say no radius."""
+        return data
 
 
 class AreaModel(Section):

@@ -17,7 +17,7 @@ from gcs_windplan.jobs.missionfile.values import FREE
 from gcs_windplan.jobs.missionfile.world import PaperWindModel, PlaceModel, SiteModel
 from gcs_windplan.jobs.obstacles import ObstacleFile
 from gcs_windplan.jobs.places import LocalPoint, Place
-from gcs_windplan.jobs.terrains import DemFiles, Hills, MeshFile, SampleDem, TerrainSource
+from gcs_windplan.jobs.terrains import DemFiles, FlatGround, Hills, MeshFile, SampleDem, TerrainSource
 from gcs_windplan.jobs.vehicles import AirframeFile
 from gcs_windplan.jobs.winds import ForecastFiles, GivenWind, SameWind, WindProfile, WindSource
 from gcs_windplan.paper.fields import Diverging, Jet, Rotation
@@ -116,7 +116,7 @@ def _terrain(document: MissionDocument) -> TerrainSource:
     if model.surface is not None:
         hills = tuple(Hill(**hill.model_dump()) for hill in model.surface.hills)
         return Hills(model.surface.size, model.surface.cell, hills, altitude, datum)
-    return SampleDem()
+    return SampleDem() if model.flat is None else FlatGround(model.flat)
 
 
 def _obstacles(document: MissionDocument) -> list[ObstacleFile]:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from pydantic import Field, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import Field
 
 from gcs_windplan.jobs.missionfile.areas import FenceModel
 from gcs_windplan.jobs.missionfile.limits import LimitsModel
@@ -28,6 +27,7 @@ from gcs_windplan.jobs.missionfile.values import (
     Weight,
 )
 from gcs_windplan.jobs.missionfile.world import ObstacleModel, SiteModel, TerrainModel, WindModel
+from gcs_windplan.jobs.words import AutopilotName, VehicleKind
 
 
 class VehicleModel(Section):
@@ -36,8 +36,8 @@ class VehicleModel(Section):
     airframe: FileName | None = Field(
         default=None, description="a file with its speeds, mass, battery and power; relative to this file"
     )
-    type: Literal["multicopter", "fixed-wing"] = Field(default="multicopter", description="kind of airframe")
-    autopilot: Literal["ardupilot", "px4"] = Field(default="ardupilot", description="firmware the mission is for")
+    type: VehicleKind = Field(default="multicopter", description="kind of airframe")
+    autopilot: AutopilotName = Field(default="ardupilot", description="firmware the mission is for")
     airspeed: AirspeedOrFree | None = Field(
         default=None,
         description="cruise speed through the air; needed without an `airframe`. `free`: each leg at its own, between"
@@ -66,6 +66,7 @@ class CostModel(Section):
     """What the search adds up."""
 
     expects: ClassVar[str] = "distance, angle, hybrid, time or energy, or {name: hybrid, distance: 0.1, angle: 0.9},"
+    alone: ClassVar[str] = "name"
 
     name: Literal["distance", "angle", "hybrid", "time", "energy"] = Field(
         description="the cost; `cost: time` is short for `cost: {name: time}`. `energy` asks for an `airframe`",
@@ -88,14 +89,6 @@ class CostModel(Section):
                 yield SchemaProblem((weight,), "a weight belongs only to the hybrid cost; leave it out", at_key=True)
         elif len(weights) == 2 and all(WEIGHT.read_or_none(fields[name]) == 0 for name in weights):
             yield SchemaProblem(("angle",), "distance and angle cannot both weigh 0; give one of them a weight")
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
-        long = dict(schema)
-        schema.clear()
-        schema.update(anyOf=[long["properties"]["name"], long])
-        return schema
 
 
 class UniformModel(Section):
@@ -168,7 +161,7 @@ class MissionModel(Section):
     name: FileStem = Field(description="of the mission and of the files written", examples=["ridge-crossing"])
     vehicle: VehicleModel = Field(description="what flies", examples=["{airspeed: 12 m/s}"])
     terrain: TerrainModel = Field(
-        description="the ground; exactly one of dem, sample, mesh, surface", examples=["{dem: tile.tif}"]
+        description="the ground; exactly one of dem, sample, mesh, surface, flat", examples=["{dem: tile.tif}"]
     )
     obstacles: tuple[ObstacleModel, ...] = Field(default=(), description="closed meshes that stand on the terrain")
     wind: WindModel = Field(description="exactly one of calm, constant, paper, forecast", examples=["{calm: true}"])

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 
 from gcs_windplan.jobs.missionfile.airframe import AirframeModel
 from gcs_windplan.jobs.missionfile.model import MissionModel
-from gcs_windplan.jobs.missionfile.section import Section
+from gcs_windplan.jobs.missionfile.section import Section, inner_sections
 from gcs_windplan.jobs.missionfile.values import Checked, Measure
 from gcs_windplan.units import QUANTITIES
 
@@ -56,21 +56,13 @@ def _sections(root: type[Section]) -> dict[type[Section], list[str]]:
 
     def visit(section: type[Section], path: str) -> None:
         for name, info in section.model_fields.items():
-            for inner, suffix in _inner_sections(info.annotation):
+            for inner, suffix in inner_sections(info.annotation):
                 place = f"{path}{info.alias or name}{suffix}"
                 places.setdefault(inner, []).append(place)
                 visit(inner, f"{place}.")
 
     visit(root, "")
     return places
-
-
-def _inner_sections(annotation: Any, suffix: str = "") -> Iterator[tuple[type[Section], str]]:
-    if isinstance(annotation, type) and issubclass(annotation, Section):
-        yield annotation, suffix
-    inside = "[]" if get_origin(annotation) is tuple else suffix
-    for argument in get_args(annotation):
-        yield from _inner_sections(argument, inside)
 
 
 def _rows(section: type[Section]) -> Iterator[tuple[str, ...]]:
@@ -96,7 +88,10 @@ def _values(annotation: Any, metadata: Sequence[object] = ()) -> str:
             return f"list of: {_values(arguments[0])}"
         case kind if kind is tuple:
             return f"[{', '.join(_values(one) for one in arguments)}]"
-    return "`true`, `false`" if annotation is bool else "section"
+    if annotation is bool:
+        return "`true`, `false`"
+    words = getattr(annotation, "words", ())
+    return f"section, or words: {', '.join(f'`{word}`' for word in words)}" if words else "section"
 
 
 def _default(info: FieldInfo) -> str:

@@ -71,7 +71,7 @@ def _local_without_origin(fields: Fields) -> Iterator[SchemaProblem]:
     A mesh or a surface without an origin is a problem of the terrain's own.
     """
     terrain = _section(fields, "terrain")
-    if "origin" in terrain or not ("dem" in terrain or "sample" in terrain):
+    if "origin" in terrain or not any(name in terrain for name in ("dem", "sample", "flat")):
         return
     advice = "needs terrain.origin, which says where the local origin is"
     for path, place in [*_sites(fields), *_beside(fields)]:

@@ -6,10 +6,11 @@ import difflib
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self, TypeAlias
+from functools import cache
+from typing import Any, ClassVar, Self, TypeAlias, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
-from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, model_validator
+from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from gcs_windplan.units import shown
 
@@ -42,11 +43,13 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     expects: ClassVar[str] = ""
+    words: ClassVar[tuple[str, ...]] = ()  # examples of the text that may stand in its place
+    alone: ClassVar[str] = ""  # the field whose value may stand in its place
     elsewhere: ClassVar[Mapping[str, str]] = {}  # fields that are looked for here, and where they stand, in words
 
     @classmethod
     def expanded(cls, data: object) -> object:
-        """What the short form of a section stands for."""
+        """What the short form of a section stands for. Raises `ValueError` for words that say nothing."""
         return data
 
     @classmethod
@@ -57,8 +60,12 @@ class Section(BaseModel):
     @model_validator(mode="wrap")
     @classmethod
     def _check(cls, data: Any, handler: Callable[[Any], Self]) -> Self:
-        data = cls.expanded(data)
-        found = list(cls.contradictions(data)) if isinstance(data, Mapping) else []
+        try:
+            data = cls.expanded(data)
+        except ValueError as error:
+            said = SchemaProblem((), str(error))
+            raise ValidationError.from_exception_data(cls.__name__, [_details(said)]) from None
+        found = list(cls.contradictions(spelled_out(cls, data))) if isinstance(data, Mapping) else []
         model = None
         try:
             model = handler(data)
@@ -68,6 +75,50 @@ class Section(BaseModel):
         if model is None or found:
             raise ValidationError.from_exception_data(cls.__name__, [_details(one) for one in found])
         return model
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        long = handler(core)
+        if cls.alone:
+            field = long["properties"][cls.alone]
+            return {"anyOf": [field.get("anyOf", [field])[0], long]}
+        return {"anyOf": [{"type": "string", "examples": list(cls.words)}, long]} if cls.words else long
+
+
+def spelled_out(section: type[Section], fields: Fields) -> Fields:
+    """The fields of a section, and of all below it, without short forms; those that are wrong stay as they are."""
+
+    def spelled(kind: type[Section], data: object) -> object:
+        try:
+            data = kind.expanded(data)
+        except ValueError:
+            return data
+        return spelled_out(kind, data) if isinstance(data, Mapping) else data
+
+    out = dict(fields)
+    for name, (kind, several) in _parts(section).items():
+        value = out.get(name)
+        if not several:
+            out.update({name: spelled(kind, value)} if name in out else {})
+        elif isinstance(value, list | tuple):
+            out[name] = [spelled(kind, entry) for entry in value]
+    return out
+
+
+def inner_sections(annotation: Any, suffix: str = "") -> Iterator[tuple[type[Section], str]]:
+    """The sections in a field's type; behind each `[]` if the field is a list of them."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        yield annotation, suffix
+    inside = "[]" if get_origin(annotation) is tuple else suffix
+    for argument in get_args(annotation):
+        yield from inner_sections(argument, inside)
+
+
+@cache
+def _parts(section: type[Section]) -> dict[str, tuple[type[Section], bool]]:
+    """The sections in a section by their fields, and whether each is a list of them; none that are one of several."""
+    found = {info.alias or name: [*inner_sections(info.annotation)] for name, info in section.model_fields.items()}
+    return {name: (kinds[0][0], bool(kinds[0][1])) for name, kinds in found.items() if len(kinds) == 1}
 
 
 def findings(error: ValidationError) -> list[SchemaProblem]:
@@ -179,7 +230,8 @@ def _not_a_choice(value: object, expected: str) -> str:
 
 
 def _some_fields(section: type[Section]) -> str:
-    return f"a section with fields ({', '.join(known_fields(section))})"
+    words = "".join(f"{word}, " for word in section.words)
+    return f"{words}{'or ' if words else ''}a section with fields ({', '.join(known_fields(section))})"
 
 
 def _listed(words: tuple[str, ...] | list[str]) -> str:

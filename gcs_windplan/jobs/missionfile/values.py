@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Annotated, Any, Final
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, StrictBool
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictBool, WithJsonSchema
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from gcs_windplan.units import (
@@ -297,6 +297,14 @@ FileStem = Annotated[
     str, Text(60, r"[\w-]([\w -]*[\w-])?", "letters, digits, spaces, - and _, with no space at the ends")
 ]
 Label = Annotated[str, Text(60, _PRINTABLE, "text on one line")]
-FileName = Annotated[str, Text(1000, _PRINTABLE, "the name of a file")]
+_FILE: Final = Text(1000, _PRINTABLE, "the name of a file")
+FileName = Annotated[str, _FILE]
+_FILES: Final = {"type": "array", "items": _FILE.json_schema(), "minItems": 1}
+FileNames = Annotated[
+    tuple[FileName, ...],
+    Field(min_length=1),
+    BeforeValidator(lambda value: value if isinstance(value, list | tuple) else [value]),  # a single one
+    WithJsonSchema({"anyOf": [_FILE.json_schema(), _FILES]}),
+]
 MeshName = Annotated[str, Text(1000, _MESH, "the name of a .stl, .obj, .ply or .glb file")]
 UtcTime = Annotated[datetime, Moment()]

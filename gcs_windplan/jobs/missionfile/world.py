@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Final, Literal
+from typing import ClassVar, Final, Literal
 
-from pydantic import ConfigDict, Field, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import ConfigDict, Field
 
 from gcs_windplan.jobs.missionfile.section import Fields, SchemaProblem, Section, at_most_one, exactly_one, only_with
+from gcs_windplan.jobs.missionfile.short_words import place_fields, profile_fields, terrain_fields, wind_fields
 from gcs_windplan.jobs.missionfile.values import (
     CLEARANCE,
     Calm,
     Direction,
     Exponent,
-    FileName,
+    FileNames,
     Height,
     Label,
     Latitude,
@@ -40,6 +40,7 @@ class PlaceModel(Section):
     """A place: latitude and longitude, or east and north of the local origin."""
 
     expects: ClassVar[str] = "a place such as {latitude: 38.1, longitude: 23.7} or {east: 100, north: 250}"
+    words: ClassVar[tuple[str, ...]] = ("38.1,23.7",)
 
     latitude: Latitude | None = Field(default=None, description="WGS 84 latitude, north positive")
     longitude: Longitude | None = Field(default=None, description="WGS 84 longitude, east positive")
@@ -47,6 +48,11 @@ class PlaceModel(Section):
         default=None, description="east of the local origin, with `north`; needs `terrain.origin`"
     )
     north: Length | None = Field(default=None, description="north of the local origin, with `east`")
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A text says latitude and longitude."""
+        return place_fields(data) if isinstance(data, str) and "," in data else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -67,6 +73,8 @@ class PlaceModel(Section):
 class SiteModel(PlaceModel):
     """A place to start from, to reach or to pass, and how high."""
 
+    words: ClassVar[tuple[str, ...]] = ("38.1,23.7", "38.1,23.7,2100", "38.1,23.7,80 m agl")
+
     height: Height | None = Field(default=None, description="above ground; beside it no `altitude`")
     altitude: Length | None = Field(default=None, description="above mean sea level; beside it no `height`")
 
@@ -80,9 +88,16 @@ class SiteModel(PlaceModel):
 class OriginModel(Section):
     """Where the local origin (0, 0, 0) is."""
 
+    words: ClassVar[tuple[str, ...]] = ("38.1,23.7,120",)
+
     latitude: Latitude = Field(description="WGS 84 latitude, north positive", examples=["38.1"])
     longitude: Longitude = Field(description="WGS 84 longitude, east positive", examples=["23.7"])
     altitude: Length = Field(default=0.0, description="above mean sea level")
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A text says latitude, longitude and perhaps the altitude."""
+        return place_fields(data) if isinstance(data, str) and "," in data else data
 
 
 class HillModel(Section):
@@ -119,11 +134,11 @@ class SurfaceModel(Section):
 class TerrainModel(Section):
     """The ground."""
 
-    model_config = one_of("dem", "sample", "mesh", "surface")
+    model_config = one_of("dem", "sample", "mesh", "surface", "flat")
+    words: ClassVar[tuple[str, ...]] = ("dem.tif", "sample:jacksboro", "flat:120 m")
 
-    dem: tuple[FileName, ...] | None = Field(
+    dem: FileNames | None = Field(
         default=None,
-        min_length=1,
         description="a file or a list of files with heights: GeoTIFF, .hgt, .hgt.zip; relative to this file",
     )
     sample: Literal["jacksboro"] | None = Field(
@@ -133,6 +148,7 @@ class TerrainModel(Section):
         default=None, description="a triangle mesh in metres, z up, about `origin`; relative to this file"
     )
     surface: SurfaceModel | None = Field(default=None, description="an analytic surface about `origin`")
+    flat: Length | None = Field(default=None, description="a plain, so high above mean sea level")
     nodata: Number | None = Field(default=None, description="this height means unknown too; only with `dem`")
     origin: OriginModel | None = Field(
         default=None,
@@ -142,27 +158,18 @@ class TerrainModel(Section):
 
     @classmethod
     def expanded(cls, data: object) -> object:
-        """A single file is a list of one."""
-        if isinstance(data, dict) and "dem" in data and not isinstance(data["dem"], list | tuple | None):
-            return {**data, "dem": [data["dem"]]}
-        return data
+        """A text says a file, the sample or a plain."""
+        return terrain_fields(data) if isinstance(data, str) else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
         """Several sources of heights or none, an origin that is needed, fields without their partner."""
-        yield from exactly_one(fields, "dem", "sample", "mesh", "surface")
+        yield from exactly_one(fields, "dem", "sample", "mesh", "surface", "flat")
         yield from only_with(fields, "nodata", "dem")
         shape = next((name for name in ("mesh", "surface") if name in fields), None)
         if shape and "origin" not in fields:
             example = "origin: {latitude: 38.1, longitude: 23.7}"
             yield SchemaProblem(("origin",), f"is missing; a {shape} needs it, for example '{example}'")
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
-        several = schema["properties"]["dem"]["anyOf"]
-        several.insert(0, several[0]["items"])
-        return schema
 
 
 class ObstacleModel(Section):
@@ -181,8 +188,15 @@ class ObstacleModel(Section):
 class ConstantWindModel(Section):
     """The same wind everywhere."""
 
+    words: ClassVar[tuple[str, ...]] = ("8 m/s from 270 deg",)
+
     speed: Speed = Field(description="wind speed", examples=["8 m/s"])
     from_: Direction = Field(alias="from", description="the true direction the wind blows from", examples=["270 deg"])
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A text says speed and direction."""
+        return wind_fields(data).get("constant", data) if isinstance(data, str) else data
 
 
 class PaperWindModel(Section):
@@ -207,6 +221,8 @@ class PaperWindModel(Section):
 class ProfileModel(Section):
     """How the wind grows with height above ground."""
 
+    words: ClassVar[tuple[str, ...]] = ("power:0.143", "log:0.1")
+
     law: Literal["power", "log"] = Field(description="the law of the profile", examples=["power"])
     exponent: Exponent | None = Field(default=None, description="of the power law, such as 0.143; required there")
     roughness: PositiveLength | None = Field(
@@ -217,6 +233,11 @@ class ProfileModel(Section):
         description="above ground, where the wind is as given; with `forecast` only for a file that does not say where"
         " its wind is",
     )
+
+    @classmethod
+    def expanded(cls, data: object) -> object:
+        """A text says the law and its figure."""
+        return profile_fields(data) if isinstance(data, str) else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -241,13 +262,13 @@ class WindModel(Section):
     """The wind."""
 
     model_config = one_of("calm", "constant", "paper", "forecast")
+    words: ClassVar[tuple[str, ...]] = ("calm", "8 m/s from 270 deg", "forecast.grib2")
 
     calm: Calm | None = Field(default=None, description="still air")
     constant: ConstantWindModel | None = Field(default=None, description="the same wind everywhere")
     paper: PaperWindModel | None = Field(default=None, description="an analytic field")
-    forecast: tuple[FileName, ...] | None = Field(
+    forecast: FileNames | None = Field(
         default=None,
-        min_length=1,
         description="a file or a list of files with a forecast or reanalysis: GRIB, NetCDF, Open-Meteo's JSON; relative"
         " to this file",
     )
@@ -265,10 +286,8 @@ class WindModel(Section):
 
     @classmethod
     def expanded(cls, data: object) -> object:
-        """A single file is a list of one."""
-        if isinstance(data, dict) and "forecast" in data and not isinstance(data["forecast"], list | tuple | None):
-            return {**data, "forecast": [data["forecast"]]}
-        return data
+        """A text says still air, a steady wind or a file."""
+        return wind_fields(data) if isinstance(data, str) else data
 
     @classmethod
     def contradictions(cls, fields: Fields) -> Iterator[SchemaProblem]:
@@ -282,10 +301,3 @@ class WindModel(Section):
             yield SchemaProblem(("members",), "names no member; write `all`, or a list of their numbers")
         if isinstance(members, list | tuple) and len(set(map(str, members))) < len(members):
             yield SchemaProblem(("members",), "names a member twice")
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        schema = handler.resolve_ref_schema(handler(core))
-        several = schema["properties"]["forecast"]["anyOf"]
-        several.insert(0, several[0]["items"])
-        return schema

@@ -1,46 +1,8 @@
-"""Firmwares: one file each holds what it takes, stores, rounds, changes, refuses and ignores, and its defaults."""
+"""Firmwares: one file each holds what it takes, stores, rounds, changes, refuses and ignores, and its defaults.
 
-from gcs_windplan.mission.firmware.firmware import (
-    Activity,
-    CommandRule,
-    Feasibility,
-    Firmware,
-    Jumps,
-    MissionType,
-    Mode,
-    Parameter,
-    Transfers,
-    stores,
-)
-from gcs_windplan.mission.firmware.registry import (
-    all_firmwares,
-    autopilot_of,
-    autopilots,
-    check_autopilot,
-    firmware_of,
-    flying_firmware,
-    known_firmware,
-)
-from gcs_windplan.mission.firmware.storage import Retention, Storage
+The names are fetched when they are first asked for: what only lists the firmwares must not wait for their facts.
+"""
 
-__all__ = [
-    "Activity",
-    "CommandRule",
-    "Feasibility",
-    "Firmware",
-    "Jumps",
-    "MissionType",
-    "Mode",
-    "Parameter",
-    "Retention",
-    "Storage",
-    "Transfers",
-    "all_firmwares",
-    "autopilot_of",
-    "autopilots",
-    "check_autopilot",
-    "firmware_of",
-    "flying_firmware",
-    "known_firmware",
-    "stores",
-]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

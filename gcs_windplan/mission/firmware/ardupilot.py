@@ -308,6 +308,7 @@ ARDUCOPTER: Final = Firmware(
     circles={mavlink.MAV_CMD_NAV_LOITER_TURNS: 2},  # mode_auto.cpp, do_circle; it stays in place at all others
     circle_radius=10.0,  # CIRCLE_RADIUS
     motion=MOTION,
+    motion_measured=True,
     modes=_MODES,
     own_modes={"hold": "LOITER", "mission": "AUTO", "guided": "GUIDED", "return": "RTL", "land": "LAND"},
     parameters=_PARAMETERS,

@@ -145,9 +145,10 @@ class Firmware:
     `circles` are the commands whose parameter of that index is the radius of circles flown, `circle_radius` [m] the
     one flown where none is named. A polygon of its fence has at most `fence_corners`.
 
-    How it flies by default: `motion` is a multicopter's, `cruise` [m/s] a fixed-wing's airspeed and `plane_return` [m]
-    its height above home on the way back, None where that is a multicopter's and never lower than it flies. Its own
-    simulator stands at `simulator_home` (latitude, longitude [deg], height AMSL [m]).
+    How it flies by default: `motion` is a multicopter's, `motion_measured` whether all of it was seen in its simulator
+    and nothing only supposed. `cruise` [m/s] is a fixed-wing's airspeed and `plane_return` [m] its height above home on
+    the way back, None where that is a multicopter's and never lower than it flies. Its own simulator stands at
+    `simulator_home` (latitude, longitude [deg], height AMSL [m]).
 
     How it talks: the first of `modes` is the one after boot, `own_modes` name those that it takes for what it does.
     `integers_as_bytes`: an integer parameter travels as its bytes in a float's place, not as its value (mavlink.io,
@@ -186,6 +187,7 @@ class Firmware:
     circles: Mapping[int, int]
     circle_radius: float
     motion: MotionProfile
+    motion_measured: bool
     modes: tuple[Mode, ...]
     own_modes: Mapping[Activity, str]
     parameters: Mapping[str, Parameter]

@@ -267,6 +267,7 @@ MULTICOPTER: Final = Firmware(
     circles={},  # multicopters have no such item
     circle_radius=80.0,  # NAV_LOITER_RAD
     motion=MOTION,
+    motion_measured=False,
     modes=_MODES,
     own_modes={"hold": "Hold", "mission": "Mission", "guided": "Hold", "return": "Return", "land": "Land"},
     parameters=_PARAMETERS,

@@ -1,23 +1,34 @@
-"""The firmwares that there are: one file each beside this one, with a `FIRMWARES` that lists its kinds of vehicles."""
+"""The firmwares that there are: one file each beside this one, named as its autopilot.
+
+Its `FIRMWARES` list the kinds of vehicles, and what all have in common.
+"""
 
 from __future__ import annotations
 
 import importlib
-import pkgutil
 from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gcs_windplan.errors import InputError
-from gcs_windplan.mission.firmware.firmware import Firmware
-from gcs_windplan.vehicle import Autopilot, VehicleType
+
+if TYPE_CHECKING:
+    from gcs_windplan.mission.firmware.firmware import Firmware
+    from gcs_windplan.vehicle import Autopilot, VehicleType
+
+
+def autopilots() -> tuple[Autopilot, ...]:
+    """The autopilots that something is known of: their files' names, of which none is imported, so that it is quick."""
+    folders = importlib.import_module(str(__package__)).__path__
+    files = (file for folder in folders for file in Path(folder).glob("*.py"))
+    return tuple(sorted(file.stem for file in files if "\nFIRMWARES" in file.read_text("utf-8")))
 
 
 @cache
 def all_firmwares() -> tuple[Firmware, ...]:
     """Every firmware for every kind of vehicle, in the order of the files."""
-    folders = importlib.import_module(__package__).__path__
-    names = sorted(module.name for module in pkgutil.iter_modules(folders))
-    modules = (importlib.import_module(f"{__package__}.{name}") for name in names)
-    return tuple(one for module in modules for one in getattr(module, "FIRMWARES", ()))
+    modules = (importlib.import_module(f"{__package__}.{name}") for name in autopilots())
+    return tuple(one for module in modules for one in module.FIRMWARES)
 
 
 def firmware_of(autopilot: Autopilot, vehicle_type: VehicleType | None = None) -> Firmware:
@@ -42,14 +53,9 @@ def flying_firmware(autopilot: Autopilot | None, vehicle_type: VehicleType | Non
     return firmware_of(autopilot or "ardupilot", vehicle_type or "multicopter")
 
 
-def autopilots() -> tuple[Autopilot, ...]:
-    """The autopilots that something is known of."""
-    return tuple(dict.fromkeys(one.autopilot for one in all_firmwares()))
-
-
 def check_autopilot(autopilot: Autopilot) -> None:
     """Raise `InputError` for an autopilot that nothing is known of."""
-    if autopilot not in autopilots():
+    if all(one.autopilot != autopilot for one in all_firmwares()):
         raise InputError(f"autopilot {autopilot!r} is neither {' nor '.join(map(repr, autopilots()))}")
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from gcs_windplan.mission.commands import Command
+from gcs_windplan.mission.commands import LANDINGS, TAKEOFFS, Command
 from gcs_windplan.mission.firmware import Firmware
 from gcs_windplan.mission.items import MissionItem
-from gcs_windplan.mission.lint.finding import LANDINGS, TAKEOFFS, Findings, FirmwareFinding, any_of, named, numbered
+from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, any_of, named, numbered
 from gcs_windplan.mission.lint.jumps import is_never_taken, repeats_forever, target_of
 from gcs_windplan.mission.mission_items import MissionItems
 

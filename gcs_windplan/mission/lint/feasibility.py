@@ -12,11 +12,11 @@ import math
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
-from gcs_windplan.mission.commands import Frame, plain_frame
+from gcs_windplan.mission.commands import TAKEOFFS, Frame, plain_frame
 from gcs_windplan.mission.firmware import Feasibility, Firmware
 from gcs_windplan.mission.firmware.floats import float_text
 from gcs_windplan.mission.items import MissionItem
-from gcs_windplan.mission.lint.finding import TAKEOFFS, Findings, FirmwareFinding, named, numbered
+from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, named, numbered
 from gcs_windplan.mission.mission_items import MissionItems
 
 _EPSILON = 1.1920929e-07  # [m] FLT_EPSILON

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from gcs_windplan.mission.commands import Command, command_name
+from gcs_windplan.mission.commands import command_name
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.mission_items import MissionItems
 
@@ -58,7 +58,3 @@ def any_of(items: Sequence[MissionItem], commands: frozenset[int]) -> bool:
 def named(item: MissionItem) -> str:
     """The item's command by name."""
     return command_name(item.command)
-
-
-TAKEOFFS = frozenset((Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF))
-LANDINGS = frozenset((Command.NAV_LAND, Command.NAV_VTOL_LAND))

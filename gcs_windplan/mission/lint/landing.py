@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 
-from gcs_windplan.mission.commands import Command
+from gcs_windplan.mission.commands import LANDINGS, Command
 from gcs_windplan.mission.firmware import Feasibility, Firmware
 from gcs_windplan.mission.items import MissionItem
 from gcs_windplan.mission.lint.feasibility import above_home, apart
-from gcs_windplan.mission.lint.finding import LANDINGS, Findings, FirmwareFinding, any_of, named, numbered
+from gcs_windplan.mission.lint.finding import Findings, FirmwareFinding, any_of, named, numbered
 from gcs_windplan.mission.mission_items import MissionItems
 
 _APPROACHES = (Command.NAV_WAYPOINT, Command.NAV_LOITER_TO_ALT)

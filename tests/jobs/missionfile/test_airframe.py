@@ -216,11 +216,11 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
 
     path = tmp_path / "a.yaml"
     assert told(path) == "there is no such file; check the name and the folder"
-    assert told(tmp_path).startswith("cannot be read: ")
+    assert told(tmp_path) == "is a folder; name the airframe file inside of it"
     path.write_bytes(b"name: \xff")
     assert told(path) == "is not UTF-8 text (byte 7); save it as UTF-8"
     path.write_bytes(b"#" * 1_000_001)
-    assert told(path) == "cannot be read: larger than 1 MB; this is not an airframe file"
+    assert told(path) == "is larger than 1 MB; this is not an airframe file"
     path.write_text("\ufeff" + airframe(), encoding="utf-8")
     assert read_airframe(str(path)).name == "bee"
 

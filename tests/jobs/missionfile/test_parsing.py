@@ -208,7 +208,7 @@ def test_the_model_is_frozen_and_checks_itself() -> None:
     model = read().model
     with pytest.raises(pydantic.ValidationError, match="frozen"):
         model.clearance = 3
-    with pytest.raises(pydantic.ValidationError, match="one of dem, sample, mesh or surface is missing"):
+    with pytest.raises(pydantic.ValidationError, match="one of dem, sample, mesh, surface or flat is missing"):
         MissionModel.model_validate({"terrain": {}})
 
 

@@ -40,6 +40,10 @@ def test_every_field_stands_in_the_reference() -> None:
     assert "| `fence` | `true`, `false` | `false` | whether the autopilot's own fence holds it too" in reference
     assert "| `battery` | share, between 0 and 0.9 |  | share of the whole capacity that must be left" in reference
     assert "| `order` | `given`, `free` | `given` | in which order `via` is passed" in reference
+    assert "| `wind` | section, or words: `calm`, `8 m/s from 270 deg`, `forecast.grib2` | required |" in reference
+    assert (
+        "| `start` | section, or words: `38.1,23.7`, `38.1,23.7,2100`, `38.1,23.7,80 m agl` | required |" in reference
+    )
     assert "- share: %" in reference
     assert "- speed: m/s, km/h, kt, mph, ft/s, ft/min" in reference
 
@@ -61,11 +65,15 @@ def test_the_json_schema_allows_units_and_short_forms() -> None:
     assert not re.search(text["pattern"], "20 m")
     assert kinds["CostModel"]["anyOf"][0]["enum"] == ["distance", "angle", "hybrid", "time", "energy"]
     assert kinds["PolygonModel"]["anyOf"][0]["type"] == "array"
-    assert kinds["TerrainModel"]["properties"]["dem"]["anyOf"][0]["type"] == "string"
-    assert kinds["WindModel"]["oneOf"][0] == {"required": ["calm"]}
+    words, terrain = kinds["TerrainModel"]["anyOf"]
+    assert words == {"type": "string", "examples": ["dem.tif", "sample:jacksboro", "flat:120 m"]}
+    assert terrain["properties"]["dem"]["anyOf"][0]["type"] == "string"
+    words, wind = kinds["WindModel"]["anyOf"]
+    assert words["type"] == "string"
+    assert wind["oneOf"][0] == {"required": ["calm"]}
     assert kinds["AreaModel"]["oneOf"] == [{"required": ["polygon"]}, {"required": ["circle"]}]
     assert kinds["AreaModel"]["properties"]["fence"]["default"] is False
-    assert "from" in kinds["ConstantWindModel"]["required"]
+    assert "from" in kinds["ConstantWindModel"]["anyOf"][1]["required"]
     share, percent, _ = kinds["LimitsModel"]["properties"]["battery"]["anyOf"]
     assert share == {"type": "number", "minimum": 0, "maximum": 0.9}
     assert re.search(percent["pattern"], "30 %")
