@@ -90,7 +90,7 @@ class Opened:
 def show(browsers, tmp_path) -> Iterator:
     opened: list[Opened] = []
 
-    def show_(*assessments: Assessment, size=LAPTOP, scheme="light", browser="3d") -> Opened:
+    def show_(*assessments: Assessment, size=LAPTOP, scheme="light", browser="flat") -> Opened:
         path = tmp_path / "page.html"
         path.write_text(render_page(assessments), encoding="utf-8")
         opened.append(Opened(browsers[browser], path, size, scheme))
@@ -161,7 +161,7 @@ def absurd(height: float) -> Assessment:
     ids=["one", "two"],
 )
 def test_it_opens_without_network_or_complaint(show, missions, size, scheme) -> None:
-    opened = show(*missions, size=size, scheme=scheme)
+    opened = show(*missions, size=size, scheme=scheme, browser="3d")
     opened.draw_scene()
     assert opened.outside == []
     assert opened.complaints == []
@@ -185,7 +185,7 @@ def test_it_opens_without_network_or_complaint(show, missions, size, scheme) -> 
     ids=lambda m: m.name,
 )
 def test_odd_missions_draw_without_complaint(show, mission) -> None:
-    opened = show(mission)
+    opened = show(mission, browser="3d")
     opened.draw_scene()
     assert opened.complaints == []
     assert opened.page.locator("#map svg image").count() == 1
@@ -234,7 +234,7 @@ def test_a_route_below_the_ground_is_seen_in_the_scene(show) -> None:
     nowhere = replace(mission, profile=replace(mission.profile, altitude=np.full_like(mission.profile.ground, np.nan)))
     drawn = []
     for one in (deep, nowhere):
-        opened = show(replace(one, stops=()))
+        opened = show(replace(one, stops=()), browser="3d")
         opened.draw_scene()
         drawn.append(pixels_of(opened.page.locator("#scene canvas").screenshot()).astype(int))
     assert (np.abs(drawn[0] - drawn[1]).sum(axis=2) > 60).sum() > 200
@@ -242,7 +242,7 @@ def test_a_route_below_the_ground_is_seen_in_the_scene(show) -> None:
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_the_scene_has_pixels_and_turns(show, size) -> None:
-    opened = show(made.assessment(), size=size)
+    opened = show(made.assessment(), size=size, browser="3d")
     opened.draw_scene()
     canvas = opened.page.locator("#scene canvas")
     before = canvas.screenshot()
@@ -255,7 +255,7 @@ def test_the_scene_has_pixels_and_turns(show, size) -> None:
 
 
 def test_without_webgl_the_scene_says_so(show) -> None:
-    opened = show(made.assessment(), browser="flat")
+    opened = show(made.assessment())
     opened.page.locator("#scene").scroll_into_view_if_needed()
     opened.page.wait_for_function("document.getElementById('scene').textContent.includes('WebGL is off')")
     assert opened.page.locator("#map svg image").count() == 1
@@ -383,7 +383,7 @@ def test_the_map_can_be_enlarged_and_shown_whole(show) -> None:
 
 
 def test_it_prints_light_with_a_still_of_the_scene(show, tmp_path) -> None:
-    opened = show(made.assessment(), scheme="dark")
+    opened = show(made.assessment(), scheme="dark", browser="3d")
     opened.draw_scene()
     opened.page.emulate_media(media="print", color_scheme="dark")
     background = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
