@@ -6,7 +6,6 @@ import importlib
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -17,6 +16,7 @@ import pytest
 from gcs_windplan.link.session import open_session
 from gcs_windplan.link.verified import push_items
 from gcs_windplan.mission import Command, Frame, MissionItem
+from tests.verbs import command, run
 
 from .loopback import LINE, PATIENCE, free_port, raw_items, until
 from .scenes import HILL
@@ -28,11 +28,9 @@ def verb() -> Iterator[Callable[..., SimpleNamespace]]:
     started: list[subprocess.Popen[str]] = []
 
     def start(*options: str) -> SimpleNamespace:
-        code = "import sys; from gcs_windplan.cli import main; sys.argv[0] = 'gcs-windplan'; main()"
         process = subprocess.Popen(
-            [sys.executable, "-W", "error", "-c", code, "vehicle", *options],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
+            command("vehicle", *options), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         started.append(process)
         printed: list[str] = []
         threading.Thread(target=lambda: printed.extend(iter(process.stdout.readline, "")), daemon=True).start()
@@ -47,10 +45,10 @@ def verb() -> Iterator[Callable[..., SimpleNamespace]]:
         process.stderr.close()
 
 
-def test_it_calls_itself_a_stand_in(verb) -> None:
-    running = verb("--help")
-    assert running.process.wait(30.0) == 0
-    words = " ".join(until(running.text, "the help").split())
+def test_it_calls_itself_a_stand_in(tmp_path) -> None:
+    done = run("vehicle", "--help", cwd=tmp_path)
+    assert done.returncode == 0
+    words = " ".join(done.stdout.split())
     assert "a stand-in, not a simulator" in words
     assert "a plain linear battery" in words
 
@@ -171,10 +169,10 @@ def test_the_world_of_a_mission_file(verb, tmp_path) -> None:
         (["--capacity", "-1"], "--capacity"),
     ],
 )
-def test_what_cannot_be_used_is_one_clear_line(options, said, verb) -> None:
-    process = verb(*options).process
-    assert process.wait(30.0) == 2
-    errors = process.stderr.read()
+def test_what_cannot_be_used_is_one_clear_line(options, said, tmp_path) -> None:
+    done = run("vehicle", *options, cwd=tmp_path)
+    assert done.returncode == 2
+    errors = done.stderr
     assert said in errors
     assert "Traceback" not in errors
     if not errors.startswith("Usage"):
@@ -182,9 +180,9 @@ def test_what_cannot_be_used_is_one_clear_line(options, said, verb) -> None:
         assert errors.startswith("error: ")
 
 
-def test_a_port_in_use(verb) -> None:
+def test_a_port_in_use(tmp_path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
-        process = verb("--listen", f"udpin:127.0.0.1:{taken.getsockname()[1]}").process
-        assert process.wait(30.0) == 2
-        assert "in use" in process.stderr.read()
+        done = run("vehicle", "--listen", f"udpin:127.0.0.1:{taken.getsockname()[1]}", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "in use" in done.stderr
