@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from gcs_windplan.cores import available_cores
+from tests.plans import FOLDER
 from tests.warming import compile_first
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,6 +35,14 @@ def pytest_xdist_auto_num_workers() -> int:
 def pytest_xdist_setupnodes() -> None:
     """Before the workers start."""
     compile_first()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _folder_for_plans(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """One folder for all workers of a run, each of which has a folder of its own in it."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+    os.environ[FOLDER] = str(shared)
 
 
 @pytest.fixture(scope="session")

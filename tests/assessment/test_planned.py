@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from gcs_windplan.assessment import Stop, assess_plan
-from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.export import flown_duration
-from gcs_windplan.planning.planner import plan_routes
 from gcs_windplan.wind import WindField
+from tests.plans import planned
 
 one_millimetre = 1e-3
 three_cm_a_second = 0.03  # the planner's quadrature is off by that where the ground's edges shape the wind
@@ -29,20 +28,20 @@ def sampled_wind(wind: WindField, start: Stop, end: Stop) -> tuple[float, float]
 
 
 @pytest.mark.parametrize("name", ["front", "inspection", "jacksboro", "keep_out", "village"])
-def test_a_plan_keeps_its_figures(gallery, name):
-    request = read_request(gallery / f"{name}.yaml")
-    plan = plan_routes(request, [request.cost])[0]
+def test_a_plan_keeps_its_figures(name):
+    plan = planned(name)
+    request = plan.request
     review = assess_plan(plan)
     flown = flown_duration(plan)
     steady = len(request.scene.wind.times) <= 1
-    for leg, planned, start, end in zip(review.legs, plan.legs, review.stops, review.stops[1:], strict=False):
-        assert leg.clearance == pytest.approx(planned.clearance, abs=one_millimetre)
-        assert leg.height == pytest.approx(planned.height, abs=one_millimetre)
-        assert leg.track_deg == pytest.approx(planned.track_deg, abs=1e-3)
-        assert leg.distance == pytest.approx(planned.distance, abs=one_millimetre)
+    for leg, meant, start, end in zip(review.legs, plan.legs, review.stops, review.stops[1:], strict=False):
+        assert leg.clearance == pytest.approx(meant.clearance, abs=one_millimetre)
+        assert leg.height == pytest.approx(meant.height, abs=one_millimetre)
+        assert leg.track_deg == pytest.approx(meant.track_deg, abs=1e-3)
+        assert leg.distance == pytest.approx(meant.distance, abs=one_millimetre)
         if steady:
-            assert leg.wind_along == pytest.approx(planned.wind_along, abs=three_cm_a_second)
-            assert leg.wind_across == pytest.approx(planned.wind_across, abs=three_cm_a_second)
+            assert leg.wind_along == pytest.approx(meant.wind_along, abs=three_cm_a_second)
+            assert leg.wind_across == pytest.approx(meant.wind_across, abs=three_cm_a_second)
             assert (leg.wind_along, leg.wind_across) == pytest.approx(
                 sampled_wind(request.scene.wind, start, end), abs=one_cm_a_second
             )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,20 +12,14 @@ import numpy as np
 import pytest
 
 from gcs_windplan.formats import read_plan, read_waypoints, write_plan, write_waypoints
-from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.mission import Command, MissionItems, fence_items, rally_items
 from gcs_windplan.planning.export import mission_of
-from gcs_windplan.planning.planner import PlannedRoute, plan_route
 from tests.oracles.fences import breaches
+from tests.plans import planned
 
 MISSIONS = sorted((Path(__file__).resolve().parents[2] / "missions").glob("*.yaml"))
 FENCED = [path for path in MISSIONS if "fence: true" in path.read_text()]
 one_millimetre = 1e-3
-
-
-@cache
-def planned(path: Path) -> PlannedRoute:
-    return plan_route(read_request(path))
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
@@ -37,7 +30,7 @@ class TestGallery:
         assert "synthetic" in path.read_text()
 
     def test_keeps_its_limits(self, path: Path):
-        plan = planned(path)
+        plan = planned(path.stem)
         request = plan.request
         points = np.array([(w.east, w.north, w.altitude) for w in plan.waypoints])
         share = np.linspace(0, 1, 2000)[:, None]
@@ -53,7 +46,7 @@ class TestGallery:
 
     def test_speeds_follow_the_plan(self, path: Path):
         """Each leg is flown at the ground speed last commanded before it, or within 0.1 m/s of it."""
-        plan = planned(path)
+        plan = planned(path.stem)
         commanded, flown = None, []
         for item in mission_of(plan).items:
             if item.command == Command.DO_CHANGE_SPEED:
@@ -66,7 +59,7 @@ class TestGallery:
         assert max(abs(a - b) for a, b in level) <= 0.11
 
     def test_altitudes_and_places_are_the_plans(self, path: Path):
-        plan = planned(path)
+        plan = planned(path.stem)
         mission = mission_of(plan)
         assert mission.home is not None
         route = [item for item in mission.items if item.command == Command.NAV_WAYPOINT]
@@ -83,7 +76,7 @@ class TestGallery:
     def test_files_are_read_alike_by_everyone(
         self, path: Path, tmp_path: Path, mavwp_load: Callable[[Path], list[Any]], mission_raw: Any
     ):
-        mission = mission_of(planned(path))
+        mission = mission_of(planned(path.stem))
         sheet, plan = tmp_path / "m.waypoints", tmp_path / "m.plan"
         write_waypoints(mission.without_fence(), sheet)
         write_plan(mission, plan)
@@ -109,7 +102,7 @@ class TestGallery:
 @pytest.mark.parametrize("path", FENCED, ids=lambda path: path.stem)
 def test_a_route_keeps_to_its_own_fence(path: Path):
     """Along every leg and at the rally points, as the autopilots themselves test the uploaded items."""
-    plan = planned(path)
+    plan = planned(path.stem)
     mission = mission_of(plan)
     fence = fence_items(mission.fence)
     assert fence
@@ -151,12 +144,12 @@ def test_the_gallery_is_whole():
         "front",
         "rounds",
     }
-    assert isinstance(mission_of(planned(MISSIONS[0])), MissionItems)
+    assert isinstance(mission_of(planned(MISSIONS[0].stem)), MissionItems)
 
 
 def test_a_mission_of_the_gallery_has_a_fence_and_rally_points():
     """Areas with `fence: true` and no other; rally points at whole metres above home, not below what was planned."""
-    plan = planned(next(path for path in MISSIONS if path.stem == "keep_out"))
+    plan = planned("keep_out")
     mission = mission_of(plan)
     assert mission.fence is not None
     assert [(len(p.corners), p.inclusion) for p in mission.fence.polygons] == [(5, False), (4, True)]

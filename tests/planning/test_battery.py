@@ -12,13 +12,13 @@ from gcs_windplan.assessment import assess_plan
 from gcs_windplan.cli.app import app
 from gcs_windplan.errors import BatteryError
 from gcs_windplan.jobs.missionfile.airframe import read_airframe
-from gcs_windplan.jobs.requests import read_request
 from gcs_windplan.planning.battery import Allowance, BatteryUse, allowances_of, check_reserve
 from gcs_windplan.planning.export import flown_duration
 from gcs_windplan.planning.planner import plan_route, plan_routes
 from gcs_windplan.planning.request import Limits
 from gcs_windplan.wind import Calm
 from tests.ensembles import divided, request
+from tests.plans import planned
 
 WATT_HOUR = 3600.0
 
@@ -46,9 +46,9 @@ def test_what_is_left_falls_from_waypoint_to_waypoint(airframe):
 
 
 @pytest.mark.parametrize("name", ["shear", "rounds", "front"])
-def test_the_review_of_the_mission_that_is_written_finds_the_same(gallery, name):
+def test_the_review_of_the_mission_that_is_written_finds_the_same(name):
     """Two ways to the battery's end: the plan's legs made longer, and the mission's items flown sample by sample."""
-    plan = plan_route(read_request(gallery / f"{name}.yaml"))
+    plan = planned(name)
     review = assess_plan(plan)
     end = plan.totals.takeoff_energy + plan.totals.landing_energy + plan.totals.energy
     assert review.totals.energy > 1.01 * end
