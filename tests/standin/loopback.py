@@ -12,7 +12,7 @@ from gcs_windplan.standin.items import MISSION, StoredItem
 
 from .scenes import at, home_again, speed, takeoff
 
-PATIENCE = 25.0  # [s] for everything that a test waits for
+PATIENCE = 90.0  # [s] for everything that a test waits for
 LINE = [at(0, 0, 300.0, frame=0), takeoff(61.999), speed(7.5), at(0, 200, 61.999), at(150, 200, 70), home_again()]
 
 
