@@ -12,6 +12,8 @@ import os
 import subprocess
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -27,27 +29,83 @@ def command(*arguments: object) -> list[str]:
 
 def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Run a verb to its end; its exit code and what it printed."""
+    with started(*arguments, cwd=cwd) as verb:
+        code = verb.wait()
+        return subprocess.CompletedProcess(verb.words, code, verb.stdout, verb.stderr)
+
+
+class Verb:
+    """A verb that was started, in a `fresh` interpreter or by forking; what it prints goes into files of a folder."""
+
+    def __init__(self, words: list[str], cwd: Path, folder: Path, *, fresh: bool) -> None:
+        self.words = words
+        self._streams = streams = [folder / "stdout", folder / "stderr"]
+        for stream in streams:
+            stream.touch()
+        self._process: subprocess.Popen[bytes] | multiprocessing.process.BaseProcess
+        if fresh:
+            with streams[0].open("wb") as out, streams[1].open("wb") as err:
+                self._process = subprocess.Popen(command(*words), cwd=cwd, stdout=out, stderr=err)
+            return
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload([PRELOADED])
+        self._process = context.Process(
+            target=_verb, args=(words, os.fspath(cwd), dict(os.environ), *map(str, streams))
+        )
+        self._process.start()
+
+    @property
+    def stdout(self) -> str:
+        """What it has printed so far."""
+        return self._streams[0].read_text()
+
+    @property
+    def stderr(self) -> str:
+        """What it has printed to its standard error so far."""
+        return self._streams[1].read_text()
+
+    def send_signal(self, number: int) -> None:
+        """Send it a signal."""
+        assert self._process.pid is not None
+        os.kill(self._process.pid, number)
+
+    def wait(self, patience: float = PATIENCE) -> int:
+        """Its exit code, once it has ended."""
+        if isinstance(self._process, subprocess.Popen):
+            return self._process.wait(patience)
+        self._process.join(patience)
+        if self._process.exitcode is None:
+            raise subprocess.TimeoutExpired(self.words, patience)
+        return self._process.exitcode
+
+    def end(self) -> None:
+        """End it if it runs yet."""
+        alive = (
+            self._process.poll() is None if isinstance(self._process, subprocess.Popen) else self._process.is_alive()
+        )
+        if alive:
+            self._process.kill()
+            self.wait(5.0)
+
+
+@contextmanager
+def started(*arguments: object, cwd: Path, fresh: bool = False) -> Iterator[Verb]:
+    """Start a verb, and end it with the block."""
     words = list(map(str, arguments))
-    if "forkserver" not in multiprocessing.get_all_start_methods() or words[:1] == ["departures"]:  # it starts workers
-        return subprocess.run(command(*words), cwd=cwd, capture_output=True, text=True, timeout=PATIENCE, check=False)
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([PRELOADED])
-    with TemporaryDirectory() as name:
-        streams = [Path(name) / "stdout", Path(name) / "stderr"]
-        process = context.Process(target=_verb, args=(words, os.fspath(cwd), dict(os.environ), *map(str, streams)))
-        process.start()
-        process.join(PATIENCE)
-        if process.exitcode is None:
-            process.kill()
-            raise subprocess.TimeoutExpired(words, PATIENCE)
-        printed = [stream.read_text() if stream.exists() else "" for stream in streams]
-    return subprocess.CompletedProcess(words, process.exitcode, *printed)
+    starts_workers = words[:1] == ["departures"]
+    fresh = fresh or starts_workers or "forkserver" not in multiprocessing.get_all_start_methods()
+    with TemporaryDirectory() as folder:
+        verb = Verb(words, cwd, Path(folder), fresh=fresh)
+        try:
+            yield verb
+        finally:
+            verb.end()
 
 
 def _verb(words: list[str], folder: str, environment: dict[str, str], stdout: str, stderr: str) -> None:
     """Become the command, with the streams and the folder of its own."""
     for path, number in ((stdout, 1), (stderr, 2)):
-        file = os.open(path, os.O_WRONLY | os.O_CREAT)
+        file = os.open(path, os.O_WRONLY)
         os.dup2(file, number)
     sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", buffering=1, closefd=False)  # noqa: SIM115
     os.environ.clear()

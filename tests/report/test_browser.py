@@ -7,6 +7,7 @@ import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,13 @@ from tests.report import made
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 LAPTOP, PHONE = (1280, 800), (390, 844)
-SOFTWARE_3D = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
+# the scene is drawn by the GL in software; the rest of the page would take twice as long by it
+SOFTWARE_3D = (
+    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-gpu-compositing",
+)  # fmt: skip
 NO_3D = ("--disable-3d-apis",)
+# the browser's own remark on how it then gets the scene's picture; the page reads no pixels
+COPIED = re.compile(r"warning: \[\.WebGL-\w+\]GL Driver Message \(OpenGL, Performance, .* GPU stall due to ReadPixels")
 
 
 def chromium() -> str:
@@ -47,24 +53,40 @@ def browsers() -> Iterator[dict]:
 
 
 class Opened:
-    """A page in a browser without a network, and all that it asked for and complained of."""
+    """A page in a browser without a network, and all that it asked for and complained of.
 
-    def __init__(self, browser, path: Path, size: tuple[int, int], scheme: str = "light") -> None:
-        self.context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]},
-            color_scheme=scheme,
-            has_touch=size == PHONE,
-            reduced_motion="reduce",
-        )
+    The window serves test after test, as a new one takes much longer than a new page; none finds anything of the last.
+    """
+
+    def __init__(self, browser, size: tuple[int, int], scheme: str) -> None:
+        self.size, self.scheme = size, scheme
+        self.context = browser.new_context(has_touch=size == PHONE)
         self.context.set_offline(True)
         self.asked: list[str] = []
         self.complaints: list[str] = []
         self.page = self.context.new_page()
         self.page.route(re.compile("^(?!file:|data:|about:|blob:)"), lambda route: route.abort())
         self.page.on("request", lambda request: self.asked.append(request.url[:80]))
-        self.page.on("console", lambda message: self.complaints.append(f"{message.type}: {message.text}"))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("console", lambda message: self.complain(f"{message.type}: {message.text}"))
+        self.page.on("pageerror", lambda error: self.complain(str(error)))
+
+    def complain(self, text: str) -> None:
+        if not COPIED.match(text):
+            self.complaints.append(text)
+
+    def open(self, path: Path) -> None:
+        """Another page, as in a new window."""
+        self.leave()
+        self.page.set_viewport_size({"width": self.size[0], "height": self.size[1]})
+        self.page.emulate_media(media="null", color_scheme=self.scheme, reduced_motion="reduce")
+        self.asked.clear()
+        self.complaints.clear()
         self.page.goto(path.as_uri())
+
+    def leave(self) -> None:
+        """Nothing is open, and the pointer is where it was at first."""
+        self.page.goto("about:blank")
+        self.page.mouse.move(0, 0)
 
     @property
     def outside(self) -> list[str]:
@@ -86,19 +108,38 @@ class Opened:
         self.page.wait_for_timeout(300)
 
 
-@pytest.fixture
-def show(browsers, tmp_path) -> Iterator:
-    opened: list[Opened] = []
+@cache
+def text_of(*missions: Assessment) -> str:
+    """The page of missions; that of the same objects is written once."""
+    return render_page(missions)
 
-    def show_(*assessments: Assessment, size=LAPTOP, scheme="light", browser="flat") -> Opened:
+
+@pytest.fixture(scope="module")
+def windows(browsers) -> Iterator[dict]:
+    """Those opened so far, by browser, size and colour scheme."""
+    opened: dict[tuple, Opened] = {}
+    yield opened
+    for window in opened.values():
+        window.context.close()
+
+
+@pytest.fixture
+def show(browsers, windows, tmp_path) -> Iterator:
+    used: list[Opened] = []
+
+    def show_(*missions: Assessment, size=LAPTOP, scheme="light", browser="flat") -> Opened:
         path = tmp_path / "page.html"
-        path.write_text(render_page(assessments), encoding="utf-8")
-        opened.append(Opened(browsers[browser], path, size, scheme))
-        return opened[-1]
+        path.write_text(text_of(*missions), encoding="utf-8")
+        kind = (browser, size, scheme)
+        if kind not in windows:
+            windows[kind] = Opened(browsers[browser], size, scheme)
+        used.append(windows[kind])
+        used[-1].open(path)
+        return used[-1]
 
     yield show_
-    for one in opened:
-        one.context.close()
+    for window in used:
+        window.leave()
 
 
 def pixels_of(png: bytes) -> np.ndarray:
@@ -107,6 +148,10 @@ def pixels_of(png: bytes) -> np.ndarray:
 
 def colours_in(png: bytes) -> int:
     return len(np.unique(pixels_of(png).reshape(-1, 3), axis=0))
+
+
+RIDGE = made.assessment()
+TWO = made.assessment("a"), made.assessment("b", shift=300.0, stops=13)
 
 
 def unknown() -> Assessment:
@@ -156,7 +201,7 @@ def absurd(height: float) -> Assessment:
     "missions",
     [
         (made.assessment(made.NASTY),),
-        (made.assessment("a"), made.assessment("b", shift=300.0, stops=13)),
+        TWO,
     ],
     ids=["one", "two"],
 )
@@ -196,7 +241,7 @@ def test_odd_missions_draw_without_complaint(show, mission) -> None:
 
 @pytest.mark.parametrize("shape", [0.4, 1.0, 1.6])
 def test_the_map_fills_its_frame(show, shape) -> None:
-    mission = made.assessment()
+    mission = RIDGE
     ground = mission.ground
     middle, half = 0.5 * (ground.north[0] + ground.north[-1]), 0.5 * np.ptp(ground.east) / shape
     north = np.linspace(middle - half, middle + half, len(ground.north))
@@ -210,7 +255,7 @@ def test_the_map_fills_its_frame(show, shape) -> None:
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_the_totals_leave_no_cell_empty(show, size) -> None:
-    mission = made.assessment()
+    mission = RIDGE
     for gust in (10.2, None):  # an even and an odd number of cells
         opened = show(replace(mission, totals=replace(mission.totals, gust=gust)), size=size)
         whole = opened.page.locator(".figures").bounding_box()
@@ -242,7 +287,7 @@ def test_a_route_below_the_ground_is_seen_in_the_scene(show) -> None:
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_the_scene_has_pixels_and_turns(show, size) -> None:
-    opened = show(made.assessment(), size=size, browser="3d")
+    opened = show(RIDGE, size=size, browser="3d")
     opened.draw_scene()
     canvas = opened.page.locator("#scene canvas")
     before = canvas.screenshot()
@@ -255,7 +300,7 @@ def test_the_scene_has_pixels_and_turns(show, size) -> None:
 
 
 def test_without_webgl_the_scene_says_so(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
     opened.page.locator("#scene").scroll_into_view_if_needed()
     opened.page.wait_for_function("document.getElementById('scene').textContent.includes('WebGL is off')")
     assert opened.page.locator("#map svg image").count() == 1
@@ -263,7 +308,7 @@ def test_without_webgl_the_scene_says_so(show) -> None:
 
 
 def test_the_pointer_reads_the_charts_out(show) -> None:
-    mission = made.assessment()
+    mission = RIDGE
     opened = show(mission)
     box = opened.place_of(".chart[data-chart=heights] .plot")
     opened.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2)
@@ -281,29 +326,29 @@ def test_the_pointer_reads_the_charts_out(show) -> None:
 
 
 def test_the_pointer_over_the_route_on_the_map_moves_the_charts(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
     opened.page.locator("#map").scroll_into_view_if_needed()
     stop = opened.page.locator("#map circle.stop").nth(4).bounding_box()
     opened.page.mouse.move(stop["x"] + 3, stop["y"] + 3)
-    expected = made.assessment().stops[5].distance
+    expected = RIDGE.stops[5].distance
     assert float(opened.reading("distance").removesuffix(" km")) * 1000 == pytest.approx(expected, abs=60)
 
 
 def test_arrow_keys_move_the_cursor_and_say_where_it_is(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
     slider = opened.page.locator("#position")
     slider.focus()
     opened.page.keyboard.press("ArrowRight")
     opened.page.keyboard.press("ArrowRight")
     assert slider.input_value() == "2"
     opened.page.keyboard.press("End")
-    assert opened.reading("distance") == f"{made.assessment().totals.distance / 1000:.2f} km"
+    assert opened.reading("distance") == f"{RIDGE.totals.distance / 1000:.2f} km"
     spoken = slider.get_attribute("aria-valuetext")
     assert all(word in spoken for word in ("altitude", "above ground", "wind along", "airspeed", "battery"))
 
 
 def test_a_touch_reads_out_on_a_phone(show) -> None:
-    opened = show(made.assessment(), size=PHONE)
+    opened = show(RIDGE, size=PHONE)
     box = opened.place_of(".chart[data-chart=speed] .plot")
     before = opened.reading("distance")
     opened.page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -313,7 +358,7 @@ def test_a_touch_reads_out_on_a_phone(show) -> None:
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 @pytest.mark.parametrize("by", ["click", "keyboard"])
 def test_a_finding_leads_to_its_place(show, size, by) -> None:
-    mission = made.assessment()
+    mission = RIDGE
     opened = show(mission, size=size)
     link = opened.page.locator("a[data-finding='1']")
     if by == "click":
@@ -338,13 +383,13 @@ def test_a_finding_leads_to_its_place(show, size, by) -> None:
 
 
 def test_a_sign_on_the_map_leads_to_its_finding(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
     opened.page.locator("#map .finding[data-finding='0']").click()
     assert opened.page.locator("#finding-0-0.chosen").count() == 1
 
 
 def test_the_charts_go_over_time_too(show) -> None:
-    mission = made.assessment()
+    mission = RIDGE
     opened = show(mission)
     opened.page.locator("input[name=axis][value=t]").check()
     assert "time since take-off" in opened.page.locator(".chart[data-chart=heights] .plot").text_content()
@@ -355,7 +400,7 @@ def test_the_charts_go_over_time_too(show) -> None:
 
 
 def test_both_missions_are_read_out_at_the_same_place(show) -> None:
-    opened = show(made.assessment("a"), made.assessment("b", shift=300.0, stops=13))
+    opened = show(*TWO)
     opened.page.locator("#position").focus()
     for _ in range(40):
         opened.page.keyboard.press("ArrowRight")
@@ -366,7 +411,7 @@ def test_both_missions_are_read_out_at_the_same_place(show) -> None:
 
 
 def test_the_map_can_be_enlarged_and_shown_whole(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
 
     def width() -> float:
         return float(opened.page.locator("#map image").get_attribute("width"))
@@ -383,7 +428,7 @@ def test_the_map_can_be_enlarged_and_shown_whole(show) -> None:
 
 
 def test_it_prints_light_with_a_still_of_the_scene(show, tmp_path) -> None:
-    opened = show(made.assessment(), scheme="dark", browser="3d")
+    opened = show(RIDGE, scheme="dark", browser="3d")
     opened.draw_scene()
     opened.page.emulate_media(media="print", color_scheme="dark")
     background = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
@@ -398,7 +443,7 @@ def test_it_prints_light_with_a_still_of_the_scene(show, tmp_path) -> None:
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 @pytest.mark.parametrize("browser", ["3d", "flat"])
 def test_on_paper_the_map_fills_its_frame_and_no_chart_is_cut(show, size, browser) -> None:
-    opened = show(made.assessment(), size=size, browser=browser)
+    opened = show(RIDGE, size=size, browser=browser)
     if browser == "3d":
         opened.draw_scene()
     a4_without_margins = {"width": 688, "height": 1017}
@@ -418,7 +463,7 @@ def test_on_paper_the_map_fills_its_frame_and_no_chart_is_cut(show, size, browse
 
 
 def test_the_skip_link_is_the_first_stop_of_the_tabulator(show) -> None:
-    opened = show(made.assessment())
+    opened = show(RIDGE)
     opened.page.keyboard.press("Tab")
     assert opened.page.evaluate("document.activeElement.className") == "skip"
     opened.page.keyboard.press("Enter")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import importlib
 import signal
 import socket
-import subprocess
-import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -16,33 +16,19 @@ import pytest
 from gcs_windplan.link.session import open_session
 from gcs_windplan.link.verified import push_items
 from gcs_windplan.mission import Command, Frame, MissionItem
-from tests.verbs import command, run
+from tests.verbs import Verb, run, started
 
 from .loopback import LINE, PATIENCE, free_port, raw_items, until
 from .scenes import HILL
 
 
 @pytest.fixture
-def verb() -> Iterator[Callable[..., SimpleNamespace]]:
-    """Starts `gcs-windplan vehicle` as a user does; `text` is its log."""
-    started: list[subprocess.Popen[str]] = []
-
-    def start(*options: str) -> SimpleNamespace:
-        process = subprocess.Popen(
-            command("vehicle", *options), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+def verb() -> Iterator[Callable[..., Verb]]:
+    """Starts `gcs-windplan vehicle`; in a `fresh` interpreter as a user does."""
+    with ExitStack() as stack:
+        yield lambda *options, fresh=False: stack.enter_context(
+            started("vehicle", *options, cwd=Path.cwd(), fresh=fresh)
         )
-        started.append(process)
-        printed: list[str] = []
-        threading.Thread(target=lambda: printed.extend(iter(process.stdout.readline, "")), daemon=True).start()
-        return SimpleNamespace(process=process, text=lambda: "".join(printed))
-
-    yield start
-    for process in started:
-        if process.poll() is None:
-            process.kill()
-        process.wait(5.0)
-        process.stdout.close()
-        process.stderr.close()
 
 
 def test_it_calls_itself_a_stand_in(tmp_path) -> None:
@@ -55,17 +41,19 @@ def test_it_calls_itself_a_stand_in(tmp_path) -> None:
 
 def test_the_verb_with_mavsdk_and_ctrl_c(verb, mavsdk) -> None:
     port = free_port()
-    running = verb("--listen", f"udpin:127.0.0.1:{port}", "--home", "36.5,-84.3,300", "--fly", "--speedup", "20")
-    until(lambda: "a stand-in, no real vehicle" in running.text(), "its first line")
+    running = verb(
+        "--listen", f"udpin:127.0.0.1:{port}", "--home", "36.5,-84.3,300", "--fly", "--speedup", "20", fresh=True
+    )
+    until(lambda: "a stand-in, no real vehicle" in running.stdout, "its first line")
     station = mavsdk(f"udpout://127.0.0.1:{port}")
-    until(lambda: "is there" in running.text(), "a greeting")
+    until(lambda: "is there" in running.stdout, "a greeting")
     until(lambda: _uploaded(station), "an upload")
-    until(lambda: "item 3 is the current one: NAV_WAYPOINT" in running.text(), "a flight")
-    running.process.send_signal(signal.SIGINT)
-    assert running.process.wait(10.0) == 0
-    assert running.process.stderr.read() == ""
-    assert until(lambda: running.text().endswith("ended\n"), "its last line")
-    assert "upload of mission by" in running.text()
+    until(lambda: "item 3 is the current one: NAV_WAYPOINT" in running.stdout, "a flight")
+    running.send_signal(signal.SIGINT)
+    assert running.wait(10.0) == 0
+    assert running.stderr == ""
+    assert until(lambda: running.stdout.endswith("ended\n"), "its last line")
+    assert "upload of mission by" in running.stdout
 
 
 def _uploaded(station: SimpleNamespace) -> bool:
@@ -81,7 +69,7 @@ def _uploaded(station: SimpleNamespace) -> bool:
 def test_700_items_in_two_seconds(verb) -> None:
     port = free_port()
     running = verb("--listen", f"udpin:127.0.0.1:{port}")
-    until(lambda: "a stand-in" in running.text(), "its first line")
+    until(lambda: "a stand-in" in running.stdout, "its first line")
     with open_session(f"udpout:127.0.0.1:{port}", timeout=20.0) as session:
         peer = session.meet()
         for count in range(1, 6):  # a busy machine may stop us in one of them
@@ -89,8 +77,8 @@ def test_700_items_in_two_seconds(verb) -> None:
             part = push_items(session, peer, "mission", [PLACE] * 700)
             assert time.monotonic() - begin < PATIENCE
             assert part.outcome.verdict == "accepted", part.outcome
-            until(lambda count=count: running.text().count("accepted: 700 items in") == count, "the log")
-            seconds = float(running.text().rpartition("700 items in ")[2].split()[0])
+            until(lambda count=count: running.stdout.count("accepted: 700 items in") == count, "the log")
+            seconds = float(running.stdout.rpartition("700 items in ")[2].split()[0])
             if seconds < 2.0:
                 break
     assert seconds < 2.0
@@ -102,32 +90,32 @@ PLACE = MissionItem(Frame.GLOBAL_RELATIVE_ALT, Command.NAV_WAYPOINT, (0, 0, 0, 0
 def test_a_tcp_server_waits_for_the_next_caller(verb) -> None:
     port = free_port()
     running = verb("--listen", f"tcpin:127.0.0.1:{port}", "--autopilot", "px4")
-    until(lambda: "a stand-in" in running.text(), "its first line")
+    until(lambda: "a stand-in" in running.stdout, "its first line")
     for _ in range(2):
         with open_session(f"tcp:127.0.0.1:{port}", timeout=20.0) as session:
             part = push_items(session, session.meet(), "mission", [PLACE] * 3)
         assert part.outcome.verdict == "accepted", part.outcome
-    until(lambda: running.text().count("it waits for the next one") == 2, "two goodbyes")
+    until(lambda: running.stdout.count("it waits for the next one") == 2, "two goodbyes")
 
 
 def test_signed(verb, tmp_path) -> None:
     port = free_port()
     (tmp_path / "key").write_text("sesame")
     running = verb("--listen", f"udpin:127.0.0.1:{port}", "--autopilot", "px4", "--sign", str(tmp_path / "key"))
-    until(lambda: "a stand-in" in running.text(), "its first line")
+    until(lambda: "a stand-in" in running.stdout, "its first line")
     with open_session(f"udpout:127.0.0.1:{port}", key_file=tmp_path / "key", timeout=20.0) as session:
         part = push_items(session, session.meet(), "mission", [PLACE] * 3)
     assert part.outcome.verdict == "accepted", part.outcome
     with open_session(f"udpout:127.0.0.1:{port}", timeout=2.5) as session:  # hears, and is not heard
         part = push_items(session, session.meet(), "mission", [PLACE] * 5)
     assert part.outcome.verdict == "unknown", part.outcome
-    assert "5 items" not in running.text()
+    assert "5 items" not in running.stdout
 
 
 def test_mavlink_1(verb) -> None:
     port = free_port()
     running = verb("--listen", f"udpin:127.0.0.1:{port}", "--mavlink1", "--sysid", "7", "--capacity", "4")
-    until(lambda: "a stand-in" in running.text(), "its first line")
+    until(lambda: "a stand-in" in running.stdout, "its first line")
     with open_session(f"udpout:127.0.0.1:{port}", timeout=20.0) as session:
         peer = session.meet()
         assert (peer.ident.system, peer.version, peer.autopilot) == (7, 1, "ardupilot")
@@ -140,8 +128,8 @@ def test_the_world_of_a_mission_file(verb, tmp_path) -> None:
     path = tmp_path / "hill.yaml"
     path.write_text(HILL.format(autopilot="px4").replace("airspeed", "type: fixed-wing, airspeed"))
     running = verb("--listen", f"udpin:127.0.0.1:{free_port()}", "--mission", str(path), "--wind", "4@90")
-    until(lambda: "it stands at" in running.text(), "its second line")
-    note, first, second = running.text().splitlines()[:3]
+    until(lambda: "it stands at" in running.stdout, "its second line")
+    note, first, second = running.stdout.splitlines()[:3]
     assert "the stand-in flies as a multicopter" in note
     assert "PX4's mission rules" in first
     assert "it stands at 46.79999" in second
