@@ -20,6 +20,7 @@ from gcs_windplan.errors import InputError
 from gcs_windplan.geo.frame import GeoPoint, LocalFrame
 from gcs_windplan.report import page, render_page, words
 from gcs_windplan.report.places import FindingPlace, place_of
+from tests.plans import planned
 from tests.report import made
 
 MEGABYTE = 1_000_000
@@ -303,11 +304,8 @@ def test_other_numbers_of_missions_are_refused(how_many: int) -> None:
         render_page([made.clear()] * how_many)
 
 
-def test_a_planned_mission_has_a_page(gallery) -> None:
-    from gcs_windplan.jobs.requests import read_request
-    from gcs_windplan.planning.planner import plan_route
-
-    page = render_page([assess_plan(plan_route(read_request(gallery / "keep_out.yaml")))])
+def test_a_planned_mission_has_a_page() -> None:
+    page = render_page([assess_plan(planned("keep_out"))])
     text = text_of(tree_of(page).find("body"))
     assert "keep out" in text
     assert len(page.encode()) < 2 * MEGABYTE
